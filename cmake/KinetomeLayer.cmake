@@ -1,0 +1,38 @@
+# Flags every target of this project is built with.
+add_library(kinetome_options INTERFACE)
+target_compile_features(kinetome_options INTERFACE cxx_std_20)
+target_compile_options(kinetome_options INTERFACE
+  -march=${KINETOME_ARCH} -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  $<$<BOOL:${KINETOME_WERROR}>:-Werror>)
+target_compile_definitions(kinetome_options INTERFACE KINETOME_ARCH="${KINETOME_ARCH}")
+if(KINETOME_SANITIZE)
+  target_compile_options(kinetome_options INTERFACE
+    -fsanitize=${KINETOME_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(kinetome_options INTERFACE -fsanitize=${KINETOME_SANITIZE})
+endif()
+
+# kinetome_layer(NAME [USES lower layers] [LINKS external targets])
+# makes the library kinetome_NAME of src/NAME with the headers in include/kinetome/NAME.
+# Headers of a layer are found only through its target, so the link order is the include order.
+function(kinetome_layer name)
+  cmake_parse_arguments(layer "" "" "USES;LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/kinetome/${name}/*.h)
+  set(target kinetome_${name})
+
+  # A private include root with this layer's headers alone.
+  set(root ${PROJECT_BINARY_DIR}/include/${name})
+  file(MAKE_DIRECTORY ${root}/kinetome)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/include/kinetome/${name} ${root}/kinetome/${name} SYMBOLIC)
+
+  add_library(${target} STATIC ${sources} ${headers})
+  add_library(kinetome::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${root}> $<INSTALL_INTERFACE:include>)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/${name})
+  list(TRANSFORM layer_USES PREPEND kinetome_)
+  target_link_libraries(${target} PUBLIC ${layer_USES} ${layer_LINKS} PRIVATE $<BUILD_INTERFACE:kinetome_options>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_property(GLOBAL APPEND PROPERTY KINETOME_LAYERS ${target})
+endfunction()

@@ -1,0 +1,38 @@
+// What this process was granted: threads and bytes of the job, never of the node.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kinetome {
+
+struct Resources {
+    int threads = 1;
+    uint64_t memory_bytes = 0;
+    std::string threads_source;  ///< e.g. "affinity", "cgroup", "SLURM_CPUS_PER_TASK", "--threads"
+    std::string memory_source;   ///< e.g. "cgroup", "SLURM_MEM_PER_NODE", "80 % of free memory"
+};
+
+/// Threads: min(affinity, cgroup, SLURM_CPUS_PER_TASK); bytes: min(cgroup, SLURM_MEM_*), else 80 %
+/// of what is free. A given value wins. Throws UsageError for values that are not positive.
+Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes);
+
+/// "8G", "512M", "1.5GiB", "65536": binary units. Throws UsageError naming the text.
+uint64_t parse_bytes(std::string_view text);
+
+/// "8.00 GiB (8589934592 bytes)".
+std::string describe_bytes(uint64_t bytes);
+
+/// Highest resident size of this process so far (VmHWM).
+uint64_t peak_resident_bytes();
+
+/// Processor seconds of this process so far, all threads.
+double cpu_seconds();
+
+/// Throws Error(cannot run) with the missing instructions when this processor lacks what the
+/// build was compiled for.
+void require_build_architecture();
+
+}  // namespace kinetome
