@@ -1,0 +1,165 @@
+#include "kinetome/base/file.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+#include <vector>
+
+#include "descriptor.h"
+
+namespace kinetome {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t block_bytes = size_t{1} << 20;
+
+std::string reason_of(int error_number) {
+    return std::generic_category().message(error_number);
+}
+
+/// 0, or the errno of the call that failed.
+template <class Take>
+int read_all(const fs::path& path, Take&& take) {
+    const Descriptor file(path, O_RDONLY);
+    if (!file.valid()) return errno;
+    std::vector<char> block(block_bytes);
+    for (;;) {
+        const ssize_t got = ::read(file.number(), block.data(), block.size());
+        if (got > 0) {
+            take(std::string_view(block.data(), static_cast<size_t>(got)));
+        } else if (got == 0) {
+            return 0;
+        } else if (errno != EINTR) {
+            return errno;
+        }
+    }
+}
+
+StoreError read_error(const fs::path& path, int error_number) {
+    return StoreError(fmt::format("cannot read {}: {}", path.string(), reason_of(error_number)));
+}
+
+std::string_view advice_for(int error_number) {
+    switch (error_number) {
+        case ENOSPC:
+            return "disk full: free space there or choose another folder, then run the same "
+                   "command again";
+        case EDQUOT:
+            return "quota exhausted: free space of yours there or choose another folder, then run "
+                   "the same command again";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "choose a folder you may write to, or ask its owner for permission";
+        case ENOENT:
+        case ENOTDIR:
+            return "check that the folder exists";
+        default:
+            return "check the disk, then run the same command again";
+    }
+}
+
+/// A new file beside `path`, removed on destruction unless it was renamed to it.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const fs::path& path) : target_(path), file_(open_beside(path)) {}
+    ~TemporaryFile() {
+        if (!renamed_) ::unlink(temporary_.c_str());
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void write(std::string_view text) {
+        while (!text.empty()) {
+            const ssize_t put = ::write(file_.number(), text.data(), text.size());
+            if (put >= 0) {
+                text.remove_prefix(static_cast<size_t>(put));
+            } else if (errno != EINTR) {
+                fail("write");
+            }
+        }
+    }
+
+    void sync_and_rename() {
+        if (::fsync(file_.number()) != 0 || !file_.close()) fail("write");
+        if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace");
+        renamed_ = true;
+    }
+
+  private:
+    /// Not mkstemp: its files are private, and these shall have the permissions of any new file.
+    Descriptor open_beside(const fs::path& path) {
+        for (int attempt = 0;; ++attempt) {
+            temporary_ = path;
+            temporary_.replace_filename(
+                fmt::format(".{}.writing-{}-{}", path.filename().string(), ::getpid(), attempt));
+            Descriptor file(temporary_, O_WRONLY | O_CREAT | O_EXCL, 0666);
+            if (file.valid()) return file;
+            if (errno != EEXIST) fail("create");
+        }
+    }
+
+    [[noreturn]] void fail(std::string_view action) const {
+        throw create_error(action, target_, errno);
+    }
+
+    fs::path target_;
+    fs::path temporary_;
+    Descriptor file_;
+    bool renamed_ = false;
+};
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+    std::string text;
+    read_blocks(path, [&text](std::string_view block) { text.append(block); });
+    return text;
+}
+
+std::string read_source_file(const fs::path& path) {
+    std::string text;
+    const int error = read_all(path, [&text](std::string_view block) { text.append(block); });
+    if (error != 0) throw InputError::in_file(path.string(), "cannot be read: " + reason_of(error));
+    return text;
+}
+
+void read_blocks(const fs::path& path, const std::function<void(std::string_view)>& take) {
+    const int error = read_all(path, take);
+    if (error != 0) throw read_error(path, error);
+}
+
+void write_file_atomically(const fs::path& path, std::string_view text) {
+    TemporaryFile file(path);
+    file.write(text);
+    file.sync_and_rename();
+    fsync_directory(folder_of(path));
+}
+
+void fsync_path(const fs::path& path) {
+    Descriptor file(path, O_RDONLY);
+    if (!file.valid() || ::fsync(file.number()) != 0 || !file.close()) {
+        throw create_error("sync", path, errno);
+    }
+}
+
+void fsync_directory(const fs::path& path) {
+    const Descriptor folder(path, O_RDONLY | O_DIRECTORY);
+    // Some file systems cannot sync a folder and say so with EINVAL: there is nothing to wait for.
+    if (!folder.valid() || (::fsync(folder.number()) != 0 && errno != EINVAL)) {
+        throw create_error("sync", path, errno);
+    }
+}
+
+CreateError create_error(std::string_view action, const fs::path& path, int error_number) {
+    return CreateError(fmt::format("cannot {} {}: {}; {}", action, path.string(),
+                                   reason_of(error_number), advice_for(error_number)));
+}
+
+}  // namespace kinetome
