@@ -6,20 +6,21 @@
 #include <omp.h>
 
 #include <atomic>
-#include <bit>
 #include <cstdint>
 #include <exception>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "kinetome/base/pieces.h"
 
 namespace kinetome {
 
-/// Calls body(i) for i in [0, count), items handed out in order to `threads` OpenMP threads. After a
-/// throw no further item starts; the exception of the lowest index that threw is rethrown.
+/// Calls body(i) for i in [0, count), items handed out in order to `threads` OpenMP threads. After
+/// a throw no further item starts; the exception of the lowest index that threw is rethrown.
 template <class Body>
 void parallel_for(int threads, int64_t count, Body&& body) {
     if (threads <= 1 || count <= 1) {
@@ -94,13 +95,12 @@ class FixedTree {
     /// The sum of all leaves, once all are in; nothing before that or when there is no leaf.
     std::optional<Sum> take_root() { return std::exchange(root_, std::nullopt); }
 
-    /// Subtrees that wait for a sibling held elsewhere, as ((level, index), sum): what a rank sends.
+    /// Subtrees that wait for a sibling held elsewhere, as ((level, index), sum): what a rank
+    /// sends.
     std::map<std::pair<int, int64_t>, Sum> take_waiting() { return std::exchange(waiting_, {}); }
 
   private:
-    int64_t nodes_at(int level) const {
-        return (leaf_count_ + (int64_t{1} << level) - 1) >> level;
-    }
+    int64_t nodes_at(int level) const { return (leaf_count_ + (int64_t{1} << level) - 1) >> level; }
 
     int64_t leaf_count_;
     Merge merge_;
@@ -137,14 +137,15 @@ std::optional<Sum> sum_pieces(int threads, const PieceLayout& layout, Leaf&& lea
     }
     parallel_for(threads, static_cast<int64_t>(layout.pieces.size()), [&](int64_t p) {
         const auto g = static_cast<size_t>(group_of[static_cast<size_t>(p)]);
-        groups[g]->insert_leaf(p - layout.group_first[g], leaf(layout.pieces[static_cast<size_t>(p)]));
+        groups[g]->insert_leaf(p - layout.group_first[g],
+                               leaf(layout.pieces[static_cast<size_t>(p)]));
         if (--missing[g] == 0) {
             total.insert_leaf(int64_t(g), *groups[g]->take_root());
             groups[g].reset();
         }
     });
-    const auto root = total.take_root();
-    return root ? *root : std::nullopt;
+    std::optional<std::optional<Sum>> root = total.take_root();
+    return root ? std::move(*root) : std::nullopt;
 }
 
 }  // namespace kinetome

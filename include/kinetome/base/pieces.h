@@ -18,8 +18,8 @@ inline constexpr int64_t piece_frames = 2048;
 /// One clip as the cutting sees it.
 struct ClipExtent {
     uint64_t name_hash = 0;  ///< hash_name(name)
-    int64_t claimed = 0;     ///< frames its source file claims; decides the cuts, quarantined or not
-    int64_t rows = 0;        ///< rows it contributes to the matrix at hand (0: none)
+    int64_t claimed = 0;  ///< frames its source file claims; decides the cuts, quarantined or not
+    int64_t rows = 0;     ///< rows it contributes to the matrix at hand (0: none)
 };
 
 /// Whether a run of clips ends after this one, for runs of `mean_frames` on average. A cut at some
@@ -43,11 +43,13 @@ struct PieceLayout {
 };
 
 /// Cuts the rows of clips (in name order) into groups and pieces. Blocks start at the beginning of
-/// a clip and have at most piece_frames rows; short clips share a piece, long ones have several.
+/// a clip and have at most piece_frames rows; short clips share a piece, long ones have several. A
+/// piece has less than 2 · piece_frames rows. The last group ends with the last clip.
 /// Groups without rows are kept, empty, so that group numbers agree between matrices.
 PieceLayout layout_pieces(std::span<const ClipExtent> clips);
 
-/// The layout of a matrix that is not cut by clips: one group, equal pieces.
+/// The layout of a matrix that is not cut by clips: one group, pieces of piece_frames rows and what
+/// remains; no group when there are no rows.
 PieceLayout layout_rows(int64_t rows);
 
 }  // namespace kinetome
