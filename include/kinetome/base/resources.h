@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +21,20 @@ struct Resources {
 /// of what is free. A given value wins. Throws UsageError for values that are not positive.
 Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes);
 
+/// Where a grant is written down.
+struct GrantSources {
+    int affinity_threads = 1;          ///< processors the process may run on
+    std::filesystem::path root = "/";  ///< the folder that holds proc/ and sys/fs/cgroup/
+    std::function<std::optional<std::string>(const std::string& name)> environment;
+
+    static GrantSources of_this_process();
+};
+
+/// The same, from the sources given. What cannot be read or understood grants nothing and takes
+/// nothing away.
+Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes,
+                            const GrantSources& sources);
+
 /// "8G", "512M", "1.5GiB", "65536": binary units. Throws UsageError naming the text.
 uint64_t parse_bytes(std::string_view text);
 
@@ -30,9 +46,5 @@ uint64_t peak_resident_bytes();
 
 /// Processor seconds of this process so far, all threads.
 double cpu_seconds();
-
-/// Throws Error(cannot run) with the missing instructions when this processor lacks what the
-/// build was compiled for.
-void require_build_architecture();
 
 }  // namespace kinetome
