@@ -1,7 +1,9 @@
 // One logger per run, handed to whoever speaks; no global one.
 #pragma once
 
+#include <fmt/format.h>
 #include <spdlog/logger.h>
+#include <spdlog/sinks/dist_sink.h>
 
 #include <filesystem>
 #include <memory>
@@ -24,6 +26,7 @@ class Log {
   public:
     /// A log that drops everything (for tests and library use).
     Log();
+    /// Throws CreateError when the log file cannot be written.
     explicit Log(const LogOptions& options);
 
     template <class... Arguments>
@@ -43,12 +46,13 @@ class Log {
     /// Whether standard error is a terminal that may show a moving bar.
     bool on_terminal() const { return on_terminal_; }
 
-    /// Adds a log file from here on.
+    /// Adds a log file, appended to, for this log and its copies. Throws CreateError.
     void add_file(const std::filesystem::path& file);
 
   private:
     void line(spdlog::level::level_enum level, const std::string& text) const;
 
+    std::shared_ptr<spdlog::sinks::dist_sink_mt> sinks_;
     std::shared_ptr<spdlog::logger> logger_;
     LogFormat format_ = LogFormat::text;
     bool quiet_ = false;
