@@ -1,0 +1,15 @@
+// What the mixture's functions ask of the rows they are given.
+#pragma once
+
+#include "kinetome/base/matrix.h"
+#include "kinetome/base/pieces.h"
+
+namespace kinetome {
+
+/// Throws std::invalid_argument naming the first row that holds a value that is not finite.
+void require_finite(const MatrixFView& rows);
+
+/// Throws std::invalid_argument when the layout is one of another number of rows.
+void require_layout_of(const MatrixFView& rows, const PieceLayout& layout);
+
+}  // namespace kinetome
