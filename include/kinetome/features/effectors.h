@@ -1,17 +1,28 @@
 // End-effector features (S3 §3): where head, hands and feet are, seen from the root.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "kinetome/base/matrix.h"
-#include "kinetome/formats/clip.h"
+#include "kinetome/formats/skeleton.h"
 
 namespace kinetome {
 
-/// frames × 15: head, left wrist, right wrist, left ankle, right ankle in the root's own frame
-/// (full root rotation removed), cm.
-MatrixF effector_positions(const Clip& clip);
+/// The end effectors, in the order of their columns.
+inline constexpr std::array effector_roles = {JointRole::head, JointRole::left_wrist,
+                                              JointRole::right_wrist, JointRole::left_ankle,
+                                              JointRole::right_ankle};
 
-/// n × 3d: each row with those `offset` rows before and after it, indices clamped to the clip
-/// (S3 §3: F45 at 30 Hz from rows of 15).
+/// n × 15, cm: x y z of each end effector in the root's own frame, Rᵀ(p - p_root) with the full
+/// root rotation R, for n frames of one clip. `motion` is n × dof_count, `positions` the n ×
+/// 3·joint_count that joint_positions (kinematics.h) makes of it. Throws std::invalid_argument when
+/// the skeleton lacks one of effector_roles (the message names it) or the shapes disagree.
+MatrixF effector_positions(const Skeleton& skeleton, const MatrixFView& motion,
+                           const MatrixFView& positions);
+
+/// n × 3d: before each row the one `offset` rows earlier, after it the one `offset` rows later,
+/// indices clamped to the clip (S3 §3: F45 at 30 Hz from rows of 15).
 MatrixF stack_neighbours(const MatrixFView& rows, int64_t offset = 1);
 
 }  // namespace kinetome

@@ -1,0 +1,43 @@
+#include "kinetome/features/effectors.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "clip_rows.h"
+#include "root_motion.h"
+
+namespace kinetome {
+
+MatrixF effector_positions(const Skeleton& skeleton, const MatrixFView& motion,
+                           const MatrixFView& positions) {
+    require_positions_of(skeleton, motion, positions);
+    std::array<int, effector_roles.size()> joints{};
+    std::transform(effector_roles.begin(), effector_roles.end(), joints.begin(),
+                   [&](JointRole role) { return require_role(skeleton, role); });
+
+    MatrixF effectors(motion.rows(), static_cast<Eigen::Index>(3 * joints.size()));
+    for (Eigen::Index i = 0; i < motion.rows(); ++i) {
+        const Eigen::Matrix3d rotation = root_rotation(skeleton, frame_of(motion, i));
+        const Eigen::Vector3d root = joint_position(positions, i, 0);
+        for (size_t e = 0; e < joints.size(); ++e) {
+            const Eigen::Vector3d from_root = joint_position(positions, i, joints[e]) - root;
+            effectors.block<1, 3>(i, static_cast<Eigen::Index>(3 * e)) =
+                (rotation.transpose() * from_root).cast<float>().transpose();
+        }
+    }
+    return effectors;
+}
+
+MatrixF stack_neighbours(const MatrixFView& rows, int64_t offset) {
+    if (offset < 0) throw std::invalid_argument("neighbours are stacked at an offset of 0 or more");
+    const Eigen::Index count = rows.rows(), width = rows.cols();
+    MatrixF stacked(count, 3 * width);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        stacked.block(i, 0, 1, width) = rows.row(std::max<Eigen::Index>(i - offset, 0));
+        stacked.block(i, width, 1, width) = rows.row(i);
+        stacked.block(i, 2 * width, 1, width) = rows.row(std::min(i + offset, count - 1));
+    }
+    return stacked;
+}
+
+}  // namespace kinetome
