@@ -1,0 +1,87 @@
+#include "kinetome/models/pose_clusters.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace kinetome {
+
+namespace {
+
+std::vector<int64_t> wanted_counts(const PoseClusterOptions& options, int64_t frames) {
+    switch (options.count_rule) {
+        case ClusterCountRule::given:
+            return {options.clusters};
+        case ClusterCountRule::ratio: {
+            if (!(options.frames_per_cluster > 0))
+                throw std::invalid_argument("the frames per pose cluster must be positive");
+            const double ratio = static_cast<double>(frames) / options.frames_per_cluster;
+            const auto most = static_cast<double>(options.most_clusters);
+            const auto least = static_cast<double>(options.least_clusters);
+            return {static_cast<int64_t>(std::min(std::max(ratio, least), most))};
+        }
+        case ClusterCountRule::bic:
+            return options.bic_clusters;
+    }
+    return {};
+}
+
+/// The fit just finished joins those tried; it becomes the best when its criterion is lower.
+void enter(PoseClusters& best, MixtureFit fit, int64_t clusters, int64_t frames) {
+    const double criterion = bayesian_information(fit, frames);
+    const bool lowest = std::all_of(
+        best.tried.begin(), best.tried.end(),
+        [&](const TriedClusterCount& other) { return criterion < other.bayesian_information; });
+    best.tried.push_back({clusters, criterion});
+    if (lowest) best.fit = std::move(fit);
+}
+
+}  // namespace
+
+std::vector<int64_t> cluster_counts(const PoseClusterOptions& options, int64_t frames) {
+    std::vector<int64_t> counts;
+    if (frames == 0) return counts;
+    for (const int64_t wanted : wanted_counts(options, frames)) {
+        if (wanted <= 0)
+            throw std::invalid_argument("the number of pose clusters must be positive");
+        const int64_t count = std::min(wanted, frames);
+        if (std::find(counts.begin(), counts.end(), count) == counts.end()) counts.push_back(count);
+    }
+    if (counts.empty())
+        throw std::invalid_argument(
+            "choosing the number of pose clusters by BIC needs a list of numbers to try");
+    return counts;
+}
+
+int64_t cluster_count(const PoseClusterOptions& options, int64_t frames) {
+    const std::vector<int64_t> counts = cluster_counts(options, frames);
+    return counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
+}
+
+PoseClusters fit_pose_clusters(const MatrixFView& rows, const PieceLayout& layout,
+                               const PoseClusterOptions& options, int threads,
+                               const StopToken& stop,
+                               const std::function<void(const PoseClusterProgress&)>& report,
+                               const PoseClusterProgress* resume_from) {
+    const std::vector<int64_t> counts = cluster_counts(options, rows.rows());
+    if (counts.empty()) throw std::invalid_argument("pose clusters need at least one frame");
+
+    PoseClusterProgress progress;
+    if (resume_from) progress = *resume_from;
+    const MixtureProgress* resume_mixture = resume_from ? &resume_from->mixture : nullptr;
+    for (; progress.candidate < counts.size(); ++progress.candidate) {
+        const int64_t clusters = counts[progress.candidate];
+        MixtureFit fit = fit_mixture(
+            rows, layout, clusters, options.mixture, threads, stop,
+            [&](const MixtureProgress& mixture) {
+                if (!report) return;
+                progress.mixture = mixture;
+                report(progress);
+            },
+            std::exchange(resume_mixture, nullptr));
+        enter(progress.best, std::move(fit), clusters, rows.rows());
+    }
+    return std::move(progress.best);
+}
+
+}  // namespace kinetome
