@@ -25,7 +25,8 @@ struct MotionString {
     bool breaks_after(int64_t j) const;
 };
 
-/// `frame_letters` holds a letter a frame, the clips one after another; `clip_frames` their lengths.
+/// `frame_letters` holds a letter a frame, the clips one after another; `clip_frames` their
+/// lengths.
 MotionString make_motion_string(std::span<const int32_t> frame_letters,
                                 std::span<const int64_t> clip_frames);
 
