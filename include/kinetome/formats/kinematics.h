@@ -16,10 +16,33 @@ struct Pose {
     std::vector<Eigen::Matrix3d> rotations;
 };
 
-/// `dofs` has skeleton.dof_count() values (cm, radians). Computed in double.
+/// A skeleton made ready to be posed many times: nothing is allocated for a frame when the pose is
+/// used again.
+class KinematicChain {
+  public:
+    explicit KinematicChain(const Skeleton& skeleton);
+
+    int joint_count() const { return static_cast<int>(links_.size()); }
+    /// `dofs` has skeleton.dof_count() values (cm, radians). Computed in double.
+    void evaluate(std::span<const float> dofs, Pose& pose) const;
+
+  private:
+    struct Link {
+        Joint joint;
+        int first_dof = 0;
+        bool turns = false;      ///< some channel is a rotation
+        bool has_axes = false;   ///< axes are not the identity
+        bool is_offset = false;  ///< offset_before or a translation moves it in its parent's frame
+    };
+    std::vector<Link> links_;
+    int dof_count_ = 0;
+};
+
+/// One frame, for those who need no more; `dofs` as in KinematicChain::evaluate.
 Pose forward_kinematics(const Skeleton& skeleton, std::span<const float> dofs);
 
-/// Rotation of one joint in its parent's frame: axes · rotations · axesᵀ.
+/// Rotation of one joint in its parent's frame: axes · rotations · axesᵀ. `dofs` are the joint's
+/// own, one a channel.
 Eigen::Matrix3d local_rotation(const Joint& joint, std::span<const float> dofs);
 
 /// Joint positions of all frames: frames × 3·joint_count, cm, x y z of joint 0 first.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,16 +16,39 @@ namespace kinetome {
 /// One column of a motion: a translation (cm) or a rotation about an axis (radians).
 enum class Channel : uint8_t { tx, ty, tz, rx, ry, rz };
 
-constexpr bool is_rotation(Channel channel) { return channel >= Channel::rx; }
+constexpr bool is_rotation(Channel channel) {
+    return channel >= Channel::rx;
+}
 /// 0 for x, 1 for y, 2 for z.
-constexpr int axis_of(Channel channel) { return static_cast<int>(channel) % 3; }
+constexpr int axis_of(Channel channel) {
+    return static_cast<int>(channel) % 3;
+}
+
+/// "tx" … "rz".
+std::string_view channel_name(Channel channel);
+/// The channel of that (lower-case) name, if any.
+std::optional<Channel> find_channel(std::string_view name);
 
 /// What a joint is to the features, whatever its rig calls it. For ASF a joint is a bone and its
 /// position the bone's far end: the left ankle is the end of `ltibia`.
 enum class JointRole : uint8_t {
-    root, left_hip, right_hip, left_knee, right_knee, left_ankle, right_ankle,
-    left_toes, right_toes, lower_neck, head, left_shoulder, right_shoulder,
-    left_elbow, right_elbow, left_wrist, right_wrist,
+    root,
+    left_hip,
+    right_hip,
+    left_knee,
+    right_knee,
+    left_ankle,
+    right_ankle,
+    left_toes,
+    right_toes,
+    lower_neck,
+    head,
+    left_shoulder,
+    right_shoulder,
+    left_elbow,
+    right_elbow,
+    left_wrist,
+    right_wrist,
 };
 inline constexpr int joint_role_count = 17;
 std::string_view joint_role_name(JointRole role);
@@ -44,6 +68,12 @@ struct Joint {
     bool first_rotation_acts_first = true;
     /// Allowed range of each channel (radians or cm); empty when the source states none.
     std::vector<std::pair<double, double>> limits;
+};
+
+/// What one unit of a source file is here. An AMC file is written in the units of its ASF file.
+struct SourceUnits {
+    double length = 2.54 / 0.45;              ///< cm; ASF: an inch divided by the stated length
+    double angle = std::numbers::pi / 180.0;  ///< radians
 };
 
 class Skeleton {
@@ -68,6 +98,9 @@ class Skeleton {
     int role(JointRole role) const { return roles_[static_cast<size_t>(role)]; }
     void set_role(JointRole role, int joint) { roles_[static_cast<size_t>(role)] = joint; }
 
+    const SourceUnits& source_units() const { return source_units_; }
+    void set_source_units(const SourceUnits& units) { source_units_ = units; }
+
     /// Names the class of skeletons that share pose models: joint names, parents, channels and
     /// their order; lengths and axes are free. "<joints>j<dofs>d-<8 hexadecimal digits>".
     std::string class_name() const;
@@ -77,6 +110,7 @@ class Skeleton {
     std::vector<Joint> joints_;
     std::vector<int> first_dof_;
     int dof_count_ = 0;
+    SourceUnits source_units_;
     std::array<int, joint_role_count> roles_ = make_no_roles();
 
     static constexpr std::array<int, joint_role_count> make_no_roles() {
