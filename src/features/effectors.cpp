@@ -15,10 +15,11 @@ MatrixF effector_positions(const Skeleton& skeleton, const MatrixFView& motion,
     std::transform(effector_roles.begin(), effector_roles.end(), joints.begin(),
                    [&](JointRole role) { return require_role(skeleton, role); });
 
+    const RootChain chain(skeleton);
     MatrixF effectors(motion.rows(), static_cast<Eigen::Index>(3 * joints.size()));
     for (Eigen::Index i = 0; i < motion.rows(); ++i) {
-        const Eigen::Matrix3d rotation = root_rotation(skeleton, frame_of(motion, i));
-        const Eigen::Vector3d root = joint_position(positions, i, 0);
+        const Eigen::Matrix3d rotation = chain.pose(frame_of(motion, i)).rotation;
+        const Eigen::Vector3d root = joint_position(positions, i, chain.root());
         for (size_t e = 0; e < joints.size(); ++e) {
             const Eigen::Vector3d from_root = joint_position(positions, i, joints[e]) - root;
             effectors.block<1, 3>(i, static_cast<Eigen::Index>(3 * e)) =

@@ -19,8 +19,8 @@ struct GroundDirection {
 };
 
 /// The right of a root that faces +z at yaw 0.
-GroundDirection right_of_root(const Skeleton& skeleton, std::span<const float> dofs) {
-    const double yaw = root_angles(root_rotation(skeleton, dofs)).yaw;
+GroundDirection right_of_root(const RootPose& root) {
+    const double yaw = root_angles(root.rotation).yaw;
     return {.x = -std::cos(yaw), .z = std::sin(yaw)};
 }
 
@@ -38,9 +38,10 @@ MatrixF normalised_markers(const Skeleton& skeleton, const MatrixFView& motion,
     const int left_hip = require_role(skeleton, JointRole::left_hip);
     const int right_hip = require_role(skeleton, JointRole::right_hip);
 
+    const RootChain chain(skeleton);
     MatrixF markers(positions.rows(), positions.cols());
     if (positions.rows() == 0) return markers;
-    GroundDirection right = right_of_root(skeleton, frame_of(motion, 0));
+    GroundDirection right = right_of_root(chain.pose(frame_of(motion, 0)));
     for (Eigen::Index i = 0; i < positions.rows(); ++i) {
         const Eigen::Vector3d axis =
             joint_position(positions, i, right_hip) - joint_position(positions, i, left_hip);
@@ -48,7 +49,7 @@ MatrixF normalised_markers(const Skeleton& skeleton, const MatrixFView& motion,
         if (along_ground > least_ground_share * axis.norm())
             right = {.x = axis.x() / along_ground, .z = axis.z() / along_ground};
 
-        const Eigen::Vector3d root = joint_position(positions, i, 0);
+        const Eigen::Vector3d root = joint_position(positions, i, chain.root());
         for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
             const Eigen::Vector3d from_root = joint_position(positions, i, joint) - root;
             markers(i, 3 * joint) =

@@ -18,10 +18,12 @@ constexpr double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
 
-/// Columns of a motion that are angles of joints other than the root.
+/// Columns of a motion that are angles of joints below the root.
 std::vector<int> joint_angle_dofs(const Skeleton& skeleton) {
+    const RootChain chain(skeleton);
     std::vector<int> dofs;
-    for (int joint = 1; joint < skeleton.joint_count(); ++joint) {
+    for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+        if (chain.contains(joint)) continue;
         const auto& channels = skeleton.joints()[static_cast<size_t>(joint)].channels;
         for (size_t i = 0; i < channels.size(); ++i)
             if (is_rotation(channels[i]))
@@ -69,11 +71,12 @@ struct RootPath {
 };
 
 RootPath root_path(const Skeleton& skeleton, const MatrixFView& motion) {
+    const RootChain chain(skeleton);
     RootPath path;
     for (Eigen::Index i = 0; i < motion.rows(); ++i) {
-        const auto dofs = frame_of(motion, i);
-        const RootAngles angles = root_angles(root_rotation(skeleton, dofs));
-        path.position.push_back(root_position(skeleton, dofs));
+        const RootPose pose = chain.pose(frame_of(motion, i));
+        const RootAngles angles = root_angles(pose.rotation);
+        path.position.push_back(pose.position);
         path.yaw.push_back(angles.yaw);
         path.pitch.push_back(angles.pitch);
         path.roll.push_back(angles.roll);

@@ -3,10 +3,33 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "kinetome/formats/skeleton.h"
 
 namespace kinetome {
+
+/// World position (cm) and rotation of the root.
+struct RootPose {
+    Eigen::Vector3d position;
+    Eigen::Matrix3d rotation;
+};
+
+/// The joint of the role `root` (joint 0 without such a role) and the joints above it, which some
+/// rigs have: a reference on the floor, say.
+class RootChain {
+  public:
+    explicit RootChain(const Skeleton& skeleton);
+
+    int root() const { return joints_.back(); }
+    bool contains(int joint) const;
+    /// `dofs` are all values of a frame.
+    RootPose pose(std::span<const float> dofs) const;
+
+  private:
+    const Skeleton& skeleton_;
+    std::vector<int> joints_;  ///< topmost first
+};
 
 /// R = Ry(yaw) Rx(pitch) Rz(roll), radians.
 struct RootAngles {
@@ -16,11 +39,5 @@ struct RootAngles {
 };
 
 RootAngles root_angles(const Eigen::Matrix3d& rotation);
-
-/// World rotation of the root; `dofs` are all values of a frame.
-Eigen::Matrix3d root_rotation(const Skeleton& skeleton, std::span<const float> dofs);
-
-/// World position of the root, cm.
-Eigen::Vector3d root_position(const Skeleton& skeleton, std::span<const float> dofs);
 
 }  // namespace kinetome

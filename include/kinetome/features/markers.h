@@ -9,7 +9,7 @@
 
 namespace kinetome {
 
-/// Names of the markers, one a joint, root first.
+/// Names of the markers, one a joint, in the skeleton's order.
 std::vector<std::string> marker_names(const Skeleton& skeleton);
 
 /// n × 3·joint_count, cm: root at the origin, hip axis (left to right) projected on the ground

@@ -16,9 +16,9 @@ struct PoseVectorColumn {
     double floor = 0;  ///< in that unit: 5°, 1 cm, 5 cm/s, 10°/s
 };
 
-/// Columns for a class of skeletons: joint angles (every rotation channel of every joint but the
-/// root), root height, pitch, roll, forward and lateral velocity in the facing frame, yaw speed.
-/// 62 on CMU's skeleton. Translation channels of joints other than the root are left out: files
+/// Columns for a class of skeletons: joint angles (every rotation channel of every joint below
+/// the root), root height, pitch, roll, forward and lateral velocity in the facing frame, yaw
+/// speed. 62 on CMU's skeleton. Translation channels of joints below the root are left out: files
 /// that carry them repeat the skeleton's offsets there.
 std::vector<PoseVectorColumn> pose_vector_columns(const Skeleton& skeleton);
 
