@@ -66,17 +66,12 @@ class FixedTree {
 
     void insert(int level, int64_t index, Sum value) {
         for (;;) {
-            const int64_t width = nodes_at(level);
-            if (width == 1) {
-                const std::lock_guard lock(mutex_);
-                root_ = std::move(value);
-                return;
-            }
             const int64_t sibling = index ^ 1;
-            if (sibling < width) {
+            const bool is_root = nodes_at(level) == 1;
+            if (is_root || sibling < nodes_at(level)) {
                 std::unique_lock lock(mutex_);
                 const auto waiting = waiting_.find({level, sibling});
-                if (waiting == waiting_.end()) {
+                if (is_root || waiting == waiting_.end()) {
                     waiting_.emplace(std::pair(level, index), std::move(value));
                     return;
                 }
@@ -93,10 +88,15 @@ class FixedTree {
     void insert_leaf(int64_t index, Sum value) { insert(0, index, std::move(value)); }
 
     /// The sum of all leaves, once all are in; nothing before that or when there is no leaf.
-    std::optional<Sum> take_root() { return std::exchange(root_, std::nullopt); }
+    std::optional<Sum> take_root() {
+        int level = 0;
+        while (nodes_at(level) > 1) ++level;
+        auto root = waiting_.extract({level, 0});
+        return root ? std::optional<Sum>(std::move(root.mapped())) : std::nullopt;
+    }
 
-    /// Subtrees that wait for a sibling held elsewhere, as ((level, index), sum): what a rank
-    /// sends.
+    /// What a rank sends: the subtrees that wait for a sibling held elsewhere (or the root, when
+    /// all leaves were here), as ((level, index), sum), for insert() there.
     std::map<std::pair<int, int64_t>, Sum> take_waiting() { return std::exchange(waiting_, {}); }
 
   private:
@@ -106,7 +106,6 @@ class FixedTree {
     Merge merge_;
     std::mutex mutex_;
     std::map<std::pair<int, int64_t>, Sum> waiting_;
-    std::optional<Sum> root_;
 };
 
 /// Sum of leaf(piece) over all pieces of a layout, merged by merge(left, right): pieces in a fixed
