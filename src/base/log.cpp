@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "descriptor.h"
 #include "kinetome/base/file.h"
 #include "log_line.h"
 
@@ -38,12 +39,11 @@ Log::Log(const LogOptions& options) : Log() {
 }
 
 void Log::add_file(const std::filesystem::path& file) {
-    std::shared_ptr<spdlog::sinks::sink> sink;
-    try {
-        sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
-    } catch (const spdlog::spdlog_ex&) {
+    // spdlog would try five times, and then not tell the reason.
+    if (!Descriptor(file, O_WRONLY | O_APPEND | O_CREAT, 0666).valid()) {
         throw create_error("write the log file", file, errno);
     }
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     sink->set_formatter(line_formatter(format_));
     sinks_->add_sink(std::move(sink));
 }

@@ -17,8 +17,8 @@ enum class LogFormat { text, json };
 
 struct LogOptions {
     LogFormat format = LogFormat::text;
-    bool quiet = false;          ///< warnings and errors only on the terminal
-    std::filesystem::path file;  ///< when not empty, every line also goes there, appended
+    bool quiet = false;            ///< warnings and errors only on the terminal
+    std::filesystem::path file{};  ///< when not empty, every line also goes there, appended
 };
 
 /// Timed lines on standard error and, when asked, in a file. Copies share the sinks; thread-safe.
