@@ -43,9 +43,7 @@ class AmcParser {
                 parse_joint();
             }
         }
-        finish_frame();
-        if (row_ < 0) fail_expected_text("the number of a first frame", "no frame at all");
-        clip.motion.conservativeResize(row_ + 1, Eigen::NoChange);
+        finish_take(clip);
     }
 
   private:
@@ -150,7 +148,7 @@ class AmcParser {
     }
 
     void begin_frame(MatrixF& motion) {
-        finish_frame();
+        require_whole_frame("the next frame");
         int64_t number = 0;
         const auto [number_end, error] = std::from_chars(at_, end_, number);
         const bool is_number =
@@ -162,7 +160,9 @@ class AmcParser {
                                quoted_word_here());
         }
         at_ = number_end;
-        require_end_of_line("nothing after the number of a frame");
+        if (!at_end_of_line()) {
+            fail_expected_text("nothing after the number of a frame", quoted_word_here());
+        }
         frame_number_ = number;
         ++row_;
         if (row_ >= motion.rows()) throw std::logic_error("more frames than the text has room for");
@@ -172,14 +172,41 @@ class AmcParser {
     }
 
     /// Every joint that moves must have had its line.
-    void finish_frame() const {
+    void require_whole_frame(const std::string& found) const {
         if (row_ < 0 || joints_read_ == moving_joints_) return;
         for (const JointLine& joint : joints_) {
             if (joint.units.empty() || joint.last_row == row_) continue;
             fail_expected_text("bone " + quote_for_message(joint.name) + " in frame " +
                                    std::to_string(frame_number_),
-                               at_ == end_ ? "the end of the file" : "the next frame");
+                               found);
         }
+    }
+
+    void finish_take(Clip& clip) {
+        if (row_ < 0) fail_expected_text("the number of a first frame", "no frame at all");
+        if (lacks_last_line_only()) {
+            hold_last_joint(clip);
+        } else {
+            require_whole_frame("the end of the file");
+        }
+        clip.motion.conservativeResize(row_ + 1, Eigen::NoChange);
+    }
+
+    /// Whether the text is whole but for the last line of its last frame, as in takes that CMU
+    /// publishes; a line that breaks off, or more than one line missing, is damage.
+    bool lacks_last_line_only() const {
+        return row_ > 0 && joints_read_ + 1 == moving_joints_ && place_ + 1 == order_.size() &&
+               joints_[order_[place_]].last_row == row_ - 1 && end_[-1] == '\n';
+    }
+
+    void hold_last_joint(Clip& clip) const {
+        const JointLine& joint = joints_[order_[place_]];
+        const auto count = static_cast<int64_t>(joint.units.size());
+        clip.motion.row(row_).segment(joint.first_dof, count) =
+            clip.motion.row(row_ - 1).segment(joint.first_dof, count);
+        clip.warnings.push_back("the last line of the last frame is missing; bone " +
+                                quote_for_message(joint.name) +
+                                " keeps its values of the frame before");
     }
 
     void parse_joint() {
@@ -192,9 +219,30 @@ class AmcParser {
         joint.last_row = row_;
         joints_read_ += !joint.units.empty();
         at_ += joint.name.size();
+        parse_values(joint);
+        if (at_end_of_line()) return;
+        fail_expected_text("the end of the line after " + count_of_numbers(joint),
+                           quoted_word_here());
+    }
+
+    void parse_values(const JointLine& joint) {
+        const char* at = at_;
         float* value = values_ + joint.first_dof;
-        for (const double unit : joint.units) *value++ = parse_value(joint, unit);
-        require_end_of_line("the end of the line after " + count_of_numbers(joint));
+        for (const double unit : joint.units) {
+            while (at != end_ && is_blank(*at)) ++at;
+            double number = 0;
+            const char* const number_end = parse_number(at, end_, number);
+            number *= unit;
+            const bool is_number = number_end != nullptr && std::abs(number) <= double{FLT_MAX} &&
+                                   (number_end == end_ || ends_word(*number_end));
+            if (!is_number) {
+                at_ = at;
+                fail_value(joint);
+            }
+            *value++ = static_cast<float>(number);
+            at = number_end;
+        }
+        at_ = at;
     }
 
     /// Frames of a take list their joints in one order, so the one that stood here in the last
@@ -217,23 +265,11 @@ class AmcParser {
         return joints_[found->second];
     }
 
-    float parse_value(const JointLine& joint, double unit) {
+    [[noreturn]] void fail_value(const JointLine& joint) {
         if (at_end_of_line()) {
             fail_expected_text(count_of_numbers(joint), "the end of the line");
         }
-        double number = 0;
-        const char* const number_end = parse_number(at_, end_, number);
-        const double value = number * unit;
-        const bool is_number = number_end != nullptr && std::abs(value) <= double{FLT_MAX} &&
-                               (number_end == end_ || ends_word(*number_end));
-        if (!is_number) fail_expected_text("a finite number", quoted_word_here());
-        at_ = number_end;
-        return static_cast<float>(value);
-    }
-
-    void require_end_of_line(const std::string& expected) {
-        if (at_end_of_line()) return;
-        fail_expected_text(expected, quoted_word_here());
+        fail_expected_text("a finite number", quoted_word_here());
     }
 
     static std::string count_of_numbers(const JointLine& joint) {
