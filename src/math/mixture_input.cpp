@@ -26,4 +26,12 @@ void require_layout_of(const MatrixFView& rows, const PieceLayout& layout) {
     }
 }
 
+void require_dimension_of(const MatrixFView& rows, int64_t dimension) {
+    if (rows.cols() != dimension || dimension == 0) {
+        throw std::invalid_argument("rows of " + std::to_string(rows.cols()) +
+                                    " columns were given to a mixture in " +
+                                    std::to_string(dimension) + " dimensions");
+    }
+}
+
 }  // namespace kinetome

@@ -12,4 +12,7 @@ void require_finite(const MatrixFView& rows);
 /// Throws std::invalid_argument when the layout is one of another number of rows.
 void require_layout_of(const MatrixFView& rows, const PieceLayout& layout);
 
+/// Throws std::invalid_argument unless the rows have the model's dimension, and that is not zero.
+void require_dimension_of(const MatrixFView& rows, int64_t dimension);
+
 }  // namespace kinetome
