@@ -13,80 +13,56 @@
 
 #include "kinetome/base/digest.h"
 #include "kinetome/base/matrix.h"
+#include "kinetome/store/compression.h"
+#include "kinetome/store/dataset.h"
+#include "kinetome/store/verified_files.h"
 
 namespace kinetome {
 
-enum class ElementType { float32, float64, int32, int64, uint8, uint64, text };
-
-/// How the shards of an artifact make up the logical dataset.
-enum class Sharding {
-    rows,      ///< rows of the shards, one after another in clip order
-    constant,  ///< the same in every shard
-};
-
-struct DatasetSpec {
-    std::string path;                ///< "/31j62d-…/pose_vectors"; parents are made
-    ElementType type = ElementType::float32;
-    std::vector<int64_t> row_shape;  ///< of one row; empty: a scalar a row; {31, 3}: n × 31 × 3
-    std::string units;               ///< "cm", "rad", "frames", "1", …
-    std::string description;
-    std::string source;              ///< paper and section, or "" where there is none
-    std::string frame;               ///< coordinate frame: "world, Y up", "facing frame", or ""
-    Sharding sharding = Sharding::rows;
-
-    bool operator==(const DatasetSpec&) const = default;
-};
-
-enum class Compression { none, gzip, blosc };
-/// Throws UsageError for another name, or for blosc when its plugin is not installed.
-Compression parse_compression(std::string_view name);
+/// Newest artifact format this program writes and reads.
+inline constexpr int artifact_format = 1;
 
 struct ArtifactHeader {
-    std::string stage;       ///< file attribute `stage`
-    Digest key;              ///< file attribute `key`
-    int format_version = 1;  ///< file attribute `kinetome_format`
+    std::string stage;                     ///< file attribute `stage`
+    Digest key;                            ///< file attribute `key`
+    int format_version = artifact_format;  ///< file attribute `kinetome_format`
+
+    bool operator==(const ArtifactHeader&) const = default;
 };
 
 /// What is known of a file once it is closed; the ledger keeps it.
 struct ArtifactRecord {
     std::string file_name;
     uint64_t bytes = 0;
-    Digest hash;                              ///< of the file's bytes
-    std::map<std::string, Digest> datasets;   ///< logical digest of each dataset, by path
-};
+    Digest hash;                             ///< of the file's bytes
+    std::map<std::string, Digest> datasets;  ///< logical digest of each dataset, by path
 
-/// Logical digest of a dataset, fed row by row: its path, type and row shape, then the values
-/// (texts by content, without padding). Shards fed one after another give the dataset's digest.
-class DatasetDigest {
-  public:
-    explicit DatasetDigest(const DatasetSpec& spec);
-    void rows(const void* values, int64_t count);
-    void texts(std::span<const std::string> values);
-    Digest finish() const;
-
-  private:
-    Hasher hasher_;
-    int64_t row_bytes_ = 0;
+    bool operator==(const ArtifactRecord&) const = default;
 };
 
 /// Writes one artifact. Until close() nothing exists under the final name; a writer destroyed
-/// before that removes its temporary file. Thread-safe (HDF5 is called under one lock).
-/// Errors: CreateError (permission, disk full), StoreError.
+/// before that removes its temporary file. The file's bytes depend on the rows and on the order in
+/// which datasets fill up, not on how a dataset's rows are split among calls.
+/// A writer belongs to one thread; different writers may work at the same time.
+/// Throws CreateError (permission, disk full), after which only destruction is allowed.
 class ArtifactWriter {
   public:
+    /// The folder must exist.
     ArtifactWriter(std::filesystem::path path, const ArtifactHeader& header,
                    Compression compression = Compression::none);
     ~ArtifactWriter();
     ArtifactWriter(ArtifactWriter&&) noexcept;
+    ArtifactWriter& operator=(ArtifactWriter&&) noexcept;
 
     /// Makes a dataset; append rows to it afterwards, in any number of calls.
     void create(const DatasetSpec& spec);
+    /// Whole rows, flattened.
     template <class T>
     void append(std::string_view dataset, std::span<const T> values) {
         append_values(dataset, element_type_of<T>(), values.data(), values.size());
     }
-    void append(std::string_view dataset, const MatrixF& rows);
-    void append(std::string_view dataset, const MatrixD& rows);
+    void append(std::string_view dataset, const MatrixFView& rows);
+    void append(std::string_view dataset, const MatrixDView& rows);
     void append_texts(std::string_view dataset, std::span<const std::string> values);
 
     /// create + append in one.
@@ -100,22 +76,27 @@ class ArtifactWriter {
     /// Flushes, syncs, hashes and renames.
     ArtifactRecord close();
 
-    template <class T>
-    static constexpr ElementType element_type_of();
-
   private:
-    void append_values(std::string_view dataset, ElementType type, const void* values, size_t count);
+    void append_values(std::string_view dataset, ElementType type, const void* values,
+                       size_t count);
+    template <class View>
+    void append_matrix(std::string_view dataset, const View& rows);
+
     struct State;
     std::unique_ptr<State> state_;
 };
 
-/// Reads one artifact. The file's bytes are checked against `expected` before HDF5 sees them, once
-/// per process and file. Errors: StoreError that names file and dataset.
+/// Reads one artifact, whose bytes are checked against `expected` before HDF5 sees them.
+/// Thread-safe. Throws StoreError that names file and dataset.
 class ArtifactReader {
   public:
     ArtifactReader(const std::filesystem::path& path, const Digest& expected);
+    /// Hashes the file only when `verified` does not know it yet.
+    ArtifactReader(const std::filesystem::path& path, const Digest& expected,
+                   VerifiedFiles& verified);
     ~ArtifactReader();
     ArtifactReader(ArtifactReader&&) noexcept;
+    ArtifactReader& operator=(ArtifactReader&&) noexcept;
 
     const std::filesystem::path& path() const;
     const ArtifactHeader& header() const;
@@ -128,7 +109,7 @@ class ArtifactReader {
     /// Rows [first, first + count), flattened. T must be the stored type.
     template <class T>
     std::vector<T> read(std::string_view dataset, int64_t first, int64_t count) const {
-        std::vector<T> values(value_count(dataset, ArtifactWriter::element_type_of<T>(), count));
+        std::vector<T> values(value_count(dataset, element_type_of<T>(), first, count));
         read_values(dataset, values.data(), first, count);
         return values;
     }
@@ -138,6 +119,7 @@ class ArtifactReader {
     }
     /// Rows × (product of the row shape).
     MatrixF read_matrix(std::string_view dataset, int64_t first, int64_t count) const;
+    MatrixF read_matrix(std::string_view dataset) const;
     MatrixD read_matrix_double(std::string_view dataset) const;
     std::vector<std::string> read_texts(std::string_view dataset) const;
 
@@ -145,20 +127,17 @@ class ArtifactReader {
     void digest_rows(std::string_view dataset, DatasetDigest& digest) const;
 
   private:
-    size_t value_count(std::string_view dataset, ElementType type, int64_t count) const;
+    size_t value_count(std::string_view dataset, ElementType type, int64_t first,
+                       int64_t count) const;
     void read_values(std::string_view dataset, void* values, int64_t first, int64_t count) const;
+
     struct State;
     std::unique_ptr<State> state_;
 };
 
-template <class T>
-constexpr ElementType ArtifactWriter::element_type_of() {
-    if constexpr (std::is_same_v<T, float>) return ElementType::float32;
-    if constexpr (std::is_same_v<T, double>) return ElementType::float64;
-    if constexpr (std::is_same_v<T, int32_t>) return ElementType::int32;
-    if constexpr (std::is_same_v<T, int64_t>) return ElementType::int64;
-    if constexpr (std::is_same_v<T, uint8_t>) return ElementType::uint8;
-    if constexpr (std::is_same_v<T, uint64_t>) return ElementType::uint64;
-}
+/// Datasets of a damaged file whose values cannot be read; none when the damage lies elsewhere (in
+/// the file's structure, its attributes or unused bytes). Works in a process of its own, so that
+/// whatever damaged structure does to HDF5 is done there.
+std::vector<std::string> unreadable_datasets(const std::filesystem::path& path);
 
 }  // namespace kinetome
