@@ -111,12 +111,14 @@ class AmcParser {
     }
 
     double parse_rate() const {
+        constexpr double lowest = 1;
+        constexpr double highest = 100000;
         double rate = 0;
         const std::string_view word = word_here();
         const char* const word_end = word.data() + word.size();
-        if (parse_number(word.data(), word_end, rate) != word_end || !(rate > 0) ||
-            !std::isfinite(rate)) {
-            fail_expected_text("a positive number of frames a second", quoted_word_here());
+        if (parse_number(word.data(), word_end, rate) != word_end || !(rate >= lowest) ||
+            rate > highest) {
+            fail_expected_text("a rate of 1 to 100000 frames a second", quoted_word_here());
         }
         return rate;
     }

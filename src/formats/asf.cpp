@@ -13,6 +13,9 @@
 namespace kinetome {
 namespace {
 
+/// Far above any rig; bounds the depth of what walks the hierarchy.
+constexpr size_t most_bones = 4096;
+
 /// A bone as the file states it, in the file's units; the root is one too.
 struct Bone {
     std::string name;
@@ -150,6 +153,9 @@ class AsfParser {
     void parse_bone() {
         Bone bone;
         bone.line = lines_.number();
+        if (bones_.size() == most_bones) {
+            lines_.fail("expected at most " + std::to_string(most_bones) + " bones, found more");
+        }
         for (;;) {
             if (!next_in_section()) {
                 throw InputError::at_line(

@@ -32,14 +32,6 @@ void turn_by_channels(Eigen::Matrix3d& matrix, const Joint& joint, const float* 
     }
 }
 
-Eigen::Vector3d translation(std::span<const Channel> channels, const float* dofs) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (size_t i = 0; i < channels.size(); ++i) {
-        if (!is_rotation(channels[i])) sum[axis_of(channels[i])] += static_cast<double>(dofs[i]);
-    }
-    return sum;
-}
-
 }  // namespace
 
 KinematicChain::KinematicChain(const Skeleton& skeleton) : dof_count_(skeleton.dof_count()) {
@@ -76,7 +68,8 @@ void KinematicChain::evaluate(std::span<const float> dofs, Pose& pose) const {
             rotation = pose.rotations[static_cast<size_t>(joint.parent)];
         }
         if (link.is_offset) {
-            position += rotation * (joint.offset_before + translation(joint.channels, own));
+            position += rotation * (joint.offset_before +
+                                    local_translation(joint, {own, joint.channels.size()}));
         }
         if (link.turns) {
             if (link.has_axes) rotation = (rotation * joint.axes).eval();
@@ -100,6 +93,15 @@ Eigen::Matrix3d local_rotation(const Joint& joint, std::span<const float> dofs) 
     Eigen::Matrix3d rotation = joint.axes;
     turn_by_channels(rotation, joint, dofs.data());
     return rotation * joint.axes.transpose();
+}
+
+Eigen::Vector3d local_translation(const Joint& joint, std::span<const float> dofs) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (size_t i = 0; i < joint.channels.size(); ++i) {
+        if (is_rotation(joint.channels[i])) continue;
+        sum[axis_of(joint.channels[i])] += static_cast<double>(dofs[i]);
+    }
+    return sum;
 }
 
 MatrixF joint_positions(const Clip& clip) {

@@ -45,6 +45,9 @@ Pose forward_kinematics(const Skeleton& skeleton, std::span<const float> dofs);
 /// own, one a channel.
 Eigen::Matrix3d local_rotation(const Joint& joint, std::span<const float> dofs);
 
+/// What the joint's translations add to its offset_before, cm; `dofs` as in local_rotation.
+Eigen::Vector3d local_translation(const Joint& joint, std::span<const float> dofs);
+
 /// Joint positions of all frames: frames × 3·joint_count, cm, x y z of joint 0 first.
 MatrixF joint_positions(const Clip& clip);
 

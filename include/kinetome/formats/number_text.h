@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 namespace kinetome {
@@ -15,8 +17,36 @@ inline constexpr std::array<double, 23> powers_of_ten = {
     1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
     1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
+inline constexpr std::array<uint64_t, 9> whole_powers_of_ten = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
+
 constexpr bool is_digit(char character) {
     return character >= '0' && character <= '9';
+}
+
+/// Appends the digits at `at` to `digits`, which wraps when there are more than 19; returns where
+/// they end. Eight at a time without a branch for each: lengths of numbers are hard to predict.
+inline const char* append_digits(const char* at, const char* last, uint64_t& digits) {
+    static_assert(std::endian::native == std::endian::little);
+    while (last - at >= 8) {
+        uint64_t bytes;
+        std::memcpy(&bytes, at, 8);
+        bytes ^= 0x3030303030303030;  // a digit becomes its value, anything else more than 9
+        const uint64_t others = (bytes | (bytes + 0x7676767676767676)) & 0x8080808080808080;
+        const auto count = static_cast<size_t>(std::countr_zero(others)) / 8;
+        if (count == 0) return at;
+        // Zeros before the digits, then pairs, fours and all eight are joined.
+        bytes <<= 8 * (8 - count);
+        bytes = bytes * 10 + (bytes >> 8);
+        bytes = ((bytes & 0x000000FF000000FF) * (100 + (uint64_t{1000000} << 32)) +
+                 ((bytes >> 16) & 0x000000FF000000FF) * (1 + (uint64_t{10000} << 32))) >>
+                32;
+        digits = digits * whole_powers_of_ten[count] + bytes;
+        at += count;
+        if (count < 8) return at;
+    }
+    while (at != last && is_digit(*at)) digits = digits * 10 + static_cast<uint64_t>(*at++ - '0');
+    return at;
 }
 
 inline const char* parse_by_library(const char* first, const char* last, double& value) {
@@ -46,8 +76,7 @@ inline const char* parse_number(const char* first, const char* last, double& val
     int64_t power = 0;
     if (at != last && *at == '.') {
         const char* const fraction_begin = ++at;
-        while (at != last && is_digit(*at))
-            digits = digits * 10 + static_cast<uint64_t>(*at++ - '0');
+        at = number_text::append_digits(at, last, digits);
         power = fraction_begin - at;
         digit_count -= power;
     }
