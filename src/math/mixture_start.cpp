@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -9,6 +10,7 @@
 #include "kinetome/base/parallel.h"
 #include "kinetome/base/random.h"
 #include "kinetome/math/mixture.h"
+#include "lanes.h"
 #include "mixture_input.h"
 
 namespace kinetome {
@@ -19,15 +21,15 @@ namespace {
 constexpr int64_t fan_out = 16;
 
 /// Squared distances from one point to 16 others stored dimension by dimension (d × 16).
-void squared_distances(const float* lanes, const std::vector<float>& point, float* squared) {
-    float sums[fan_out] = {};
-    for (size_t j = 0; j < point.size(); ++j) {
-        for (size_t lane = 0; lane < fan_out; ++lane) {
-            const float difference = lanes[j * fan_out + lane] - point[j];
-            sums[lane] += difference * difference;
+void squared_distances(const float* members, const std::vector<float>& point, float* squared) {
+    for (int64_t first = 0; first < fan_out; first += lane_count) {
+        Lanes sum{};
+        for (size_t j = 0; j < point.size(); ++j) {
+            const Lanes difference = load_lanes(members + j * fan_out + first) - point[j];
+            sum += difference * difference;
         }
+        store_lanes(sum, squared + first);
     }
-    std::copy_n(sums, fan_out, squared);
 }
 
 /// Index of the entry in which `target`, a point of [0, Σ), falls; what is left of the target is
@@ -45,19 +47,50 @@ size_t entry_holding(std::span<const Value> weights, double& target) {
     return last;
 }
 
-/// Balls around the 16 members of each parent, and the largest distance to a chosen centre in them.
+/// Balls around the members of one level, 16 to a parent, and how far the rows in them are from
+/// the centres chosen so far.
 struct Level {
     Level(int64_t member_count, int64_t dimension)
         : count(member_count),
-          centres(static_cast<size_t>((count + fan_out - 1) / fan_out * fan_out * dimension)),
-          radius(static_cast<size_t>(count)),
-          farthest(static_cast<size_t>(count), std::numeric_limits<float>::infinity()),
-          weight(static_cast<size_t>(count)) {}
+          centres(padded(count) * static_cast<size_t>(dimension)),
+          radius(padded(count)),
+          farthest(padded(count), std::numeric_limits<float>::infinity()),
+          reach_squared(padded(count), -1.0F),
+          weight(padded(count)) {
+        std::fill_n(reach_squared.begin(), count, std::numeric_limits<float>::infinity());
+    }
+
+    void set_farthest(int64_t member, float distance) {
+        // Far above the rounding of the distances: a row that comes nearer is never skipped.
+        constexpr float margin = 1e-4F;
+        const auto m = static_cast<size_t>(member);
+        const float reach = (radius[m] + distance) * (1 + margin);
+        farthest[m] = distance;
+        reach_squared[m] = reach * reach;
+    }
+
+    /// Bit i is set when a new centre can come nearer to a row of the parent's i-th member.
+    uint32_t reachable(int64_t parent, const std::vector<float>& centre) const {
+        float squared[fan_out];
+        const auto dimension = static_cast<int64_t>(centre.size());
+        squared_distances(centres.data() + parent * fan_out * dimension, centre, squared);
+        uint32_t bits = 0;
+        for (int64_t first = 0; first < fan_out; first += lane_count) {
+            const float* const reach = reach_squared.data() + parent * fan_out + first;
+            bits |= lanes_greater(load_lanes(reach), load_lanes(squared + first)) << first;
+        }
+        return bits;
+    }
+
+    static size_t padded(int64_t count) {
+        return static_cast<size_t>((count + fan_out - 1) / fan_out * fan_out);
+    }
 
     int64_t count;
-    std::vector<float> centres;   ///< parents × d × 16
+    LaneBuffer centres;           ///< parents × d × 16
     std::vector<float> radius;    ///< of the ball that holds all rows below
     std::vector<float> farthest;  ///< largest distance of a row below to its nearest centre
+    LaneBuffer reach_squared;     ///< a centre beyond this distance to the ball's changes nothing
     std::vector<double> weight;   ///< Σ of squared distances below
 };
 
@@ -96,10 +129,16 @@ class StartSample {
         });
     }
 
-    /// Σ of squared distances to the nearest centre, blocks in order.
+    /// Σ of squared distances to the nearest centre, blocks in order. Throws std::invalid_argument
+    /// where a squared distance is more than a float can hold.
     double total_weight() const {
         double total = 0;
-        for (const double weight : blocks_.weight) total += weight;
+        for (int64_t block = 0; block < blocks_.count; ++block) {
+            if (std::isinf(blocks_.farthest[size_t(block)])) {
+                throw std::invalid_argument("the rows are too far apart to square distances");
+            }
+            total += blocks_.weight[size_t(block)];
+        }
         return total;
     }
 
@@ -183,18 +222,12 @@ class StartSample {
 
     /// Calls `descend` for the members the centre may come nearer to; whether any was changed.
     template <class Descend>
-    bool update(const Level& members, int64_t parent, const std::vector<float>& centre,
-                Descend&& descend) {
-        // Far above the rounding of the distances: a row that comes nearer is never skipped.
-        constexpr float margin = 1e-4F;
-        float squared[fan_out];
-        squared_distances(members.centres.data() + parent * fan_out * dimension_, centre, squared);
+    static bool update(const Level& members, int64_t parent, const std::vector<float>& centre,
+                       Descend&& descend) {
         bool changed = false;
-        for_members(parent, members, [&](int64_t member) {
-            const auto m = static_cast<size_t>(member);
-            const float reach = (members.radius[m] + members.farthest[m]) * (1 + margin);
-            if (std::sqrt(squared[member % fan_out]) <= reach) changed |= descend(member);
-        });
+        for (uint32_t left = members.reachable(parent, centre); left != 0; left &= left - 1) {
+            changed |= descend(parent * fan_out + std::countr_zero(left));
+        }
         return changed;
     }
 
@@ -222,7 +255,7 @@ class StartSample {
             largest = std::max(largest, nearest);
             sum += double(nearest);
         }
-        tiles_.farthest[size_t(tile)] = std::sqrt(largest);
+        tiles_.set_farthest(tile, std::sqrt(largest));
         tiles_.weight[size_t(tile)] = sum;
         return changed;
     }
@@ -234,7 +267,7 @@ class StartSample {
             farthest = std::max(farthest, members.farthest[size_t(member)]);
             sum += members.weight[size_t(member)];
         });
-        parents.farthest[size_t(parent)] = farthest;
+        parents.set_farthest(parent, farthest);
         parents.weight[size_t(parent)] = sum;
     }
 
@@ -242,7 +275,7 @@ class StartSample {
     int64_t dimension_;
     int threads_;
     Level tiles_, supers_, blocks_;  ///< of the blocks, only weights are used
-    std::vector<float> values_;      ///< tiles × d × 16
+    LaneBuffer values_;              ///< tiles × d × 16
     std::vector<float> squared_;     ///< of each row, to the nearest centre
 };
 
@@ -284,9 +317,6 @@ Mixture start_mixture(const MatrixFView& rows, const PieceLayout& layout, int64_
     sample.add_centre(centres.back());
     for (int64_t draw = 1; draw < clusters; ++draw) {
         const double total = sample.total_weight();
-        if (!std::isfinite(total)) {
-            throw std::invalid_argument("the rows are too far apart for their squared distances");
-        }
         if (!(total > 0)) break;
         const double target = draw_stream(options.seed, restart, draw).uniform() * total;
         centres.push_back(sample.row(sample.row_at(target)));
