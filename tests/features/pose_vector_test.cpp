@@ -218,10 +218,12 @@ TEST_CASE("translations of joints below the root are no part of a pose vector") 
 }
 
 TEST_CASE("a reference joint above the root moves it but is no pose") {
-    // The reference stands where and as the root stood; the root keeps height, pitch and roll.
-    Joint reference = small_body::bone("reference", -1, {0, 0, 0},
+    // The reference stands where and as the root stood; the root keeps height, pitch and roll, and
+    // its offset undoes that of the reference.
+    Joint reference = small_body::bone("reference", -1, {4, 5, 30},
                                        {Channel::tx, Channel::ty, Channel::tz, Channel::ry});
     Joint hips = small_body::bone("hips", 0, {0, 0, 0}, {Channel::ty, Channel::rz, Channel::rx});
+    hips.offset_before = -reference.offset_after;
     Joint head = small_body::bone("head", 1, {0, 70, 5}, small_body::three_angles);
     Skeleton rig("rig", {reference, hips, head});
     rig.set_role(JointRole::root, 1);
