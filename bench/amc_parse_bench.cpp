@@ -10,12 +10,11 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "kinetome/base/file.h"
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/formats/write_amc.h"
 
@@ -30,11 +29,6 @@ struct Take {
     std::string text;
 };
 
-std::string read_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<Take> takes_of_corpus(const fs::path& corpus) {
     std::vector<Take> takes;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(corpus)) {
@@ -42,8 +36,9 @@ std::vector<Take> takes_of_corpus(const fs::path& corpus) {
         const fs::path folder = entry.path().parent_path();
         const fs::path asf = folder / (folder.filename().string() + ".asf");
         if (!fs::exists(asf)) continue;
-        takes.push_back({std::make_shared<const Skeleton>(parse_asf(read_file(asf), asf.string())),
-                         entry.path().string(), read_file(entry.path())});
+        takes.push_back(
+            {std::make_shared<const Skeleton>(parse_asf(read_source_file(asf), asf.string())),
+             entry.path().string(), read_source_file(entry.path())});
     }
     return takes;
 }
