@@ -16,9 +16,10 @@ void add_filters(hid_t creation, const Layout& layout, const Context& context) {
         check(H5Pset_shuffle(creation), context);
         check(H5Pset_deflate(creation, 1), context);
     } else if (layout.compression == Compression::blosc) {
-        // Reserved ×4, level, byte shuffle, codec LZ4 (hdf5-blosc's README).
+        // Reserved ×4, level, byte shuffle, codec LZ4 (hdf5-blosc's README). Optional: what does
+        // not shrink is stored as it is.
         constexpr std::array<unsigned, 7> options{0, 0, 0, 0, 1, 1, 1};
-        check(H5Pset_filter(creation, blosc_filter, H5Z_FLAG_MANDATORY, options.size(),
+        check(H5Pset_filter(creation, blosc_filter, H5Z_FLAG_OPTIONAL, options.size(),
                             options.data()),
               context);
     }

@@ -24,7 +24,7 @@ inline constexpr int artifact_format = 1;
 
 struct ArtifactHeader {
     std::string stage;                     ///< file attribute `stage`
-    Digest key;                            ///< file attribute `key`
+    Digest key = {};                       ///< file attribute `key`
     int format_version = artifact_format;  ///< file attribute `kinetome_format`
 
     bool operator==(const ArtifactHeader&) const = default;

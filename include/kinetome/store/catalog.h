@@ -25,9 +25,9 @@ struct CatalogClip {
     int64_t frames = 0;           ///< indexed frames at the source's rate; 0 when quarantined
     double rate = 0;              ///< frames a second
     std::string clip_class;       ///< skeleton class; "" when quarantined
-    std::vector<std::string> capabilities;  ///< "angles", "effectors", "markers"
-    std::string shard;            ///< cut name of its shard
-    std::string quarantined;      ///< reason; "" when indexed
+    std::vector<std::string> capabilities;       ///< "angles", "effectors", "markers"
+    std::string shard;                           ///< cut name of its shard
+    std::string quarantined;                     ///< reason; "" when indexed
     std::map<std::string, std::string> skipped;  ///< stage → why it left this clip out
     std::vector<std::string> warnings;
 
@@ -35,9 +35,9 @@ struct CatalogClip {
 };
 
 struct Catalog {
-    std::string corpus;               ///< folder it was read from, as given
-    std::vector<CatalogClip> clips;   ///< sorted by name
-    std::vector<std::string> removed; ///< names the last generation had and this one has not
+    std::string corpus;                ///< folder it was read from, as given
+    std::vector<CatalogClip> clips;    ///< sorted by name
+    std::vector<std::string> removed;  ///< names the last generation had and this one has not
 
     int64_t indexed() const;
     int64_t quarantined() const;

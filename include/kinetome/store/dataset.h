@@ -45,11 +45,11 @@ enum class Sharding {
 struct DatasetSpec {
     std::string path;  ///< "/31j62d-…/pose_vectors"; parents are made
     ElementType type = ElementType::float32;
-    std::vector<int64_t> row_shape;  ///< of one row; empty: a scalar a row; {31, 3}: n × 31 × 3
-    std::string units;               ///< "cm", "rad", "frames", "1", …
-    std::string description;
-    std::string source;  ///< paper and section, or "" where there is none
-    std::string frame;   ///< coordinate frame: "world, Y up", "facing frame", or ""
+    std::vector<int64_t> row_shape = {};  ///< of one row; empty: a scalar; {31, 3}: n × 31 × 3
+    std::string units = {};               ///< "cm", "rad", "frames", "1", …
+    std::string description = {};
+    std::string source = {};  ///< paper and section, or "" where there is none
+    std::string frame = {};   ///< coordinate frame: "world, Y up", "facing frame", or ""
     Sharding sharding = Sharding::rows;
 
     /// Values in one row: the product of its shape.
