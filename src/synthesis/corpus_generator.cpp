@@ -1,0 +1,94 @@
+#include "kinetome/synthesis/corpus_generator.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/formats/write_amc.h"
+#include "kinetome/formats/write_bvh.h"
+#include "take_source.h"
+
+namespace kinetome {
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw create_error("create", folder, error.value());
+}
+
+void refuse_occupied(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::exists(folder, error)) return;
+    if (!fs::is_directory(folder, error) || !fs::is_empty(folder, error))
+        throw UsageError(folder.string() +
+                         " is not an empty folder; name a new one, or remove it first");
+}
+
+void write_take(const NewTake& take, const fs::path& folder, MotionFormat format) {
+    const fs::path home = folder / take.subject;
+    make_folder(home);
+    if (format == MotionFormat::bvh) {
+        write_file_atomically(home / (take.name + ".bvh"), write_bvh(take.clip));
+        return;
+    }
+    if (take.first_of_subject)
+        write_file_atomically(home / (take.subject + ".asf"), write_asf(*take.clip.skeleton));
+    write_file_atomically(home / (take.name + ".amc"), write_amc(take.clip));
+}
+
+/// Makes and writes all takes; returns their annotations in order.
+Annotations write_takes(const TakeSource& source, const fs::path& folder, MotionFormat format,
+                        int threads, const FramesDone& frames_done, const StopToken& stop) {
+    std::vector<Annotations> annotations(static_cast<size_t>(source.takes()));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        const auto one = [&](int64_t index) {
+            stop.check();
+            NewTake take = source.make(index);
+            write_take(take, folder, format);
+            annotations[static_cast<size_t>(index)] = std::move(take.annotations);
+            if (frames_done) frames_done(take.clip.frames());
+        };
+        tbb::parallel_for(int64_t{0}, source.takes(), one, tbb::simple_partitioner());
+    });
+    Annotations all;
+    for (const Annotations& one : annotations) all.append(one);
+    return all;
+}
+
+}  // namespace
+
+GenerateSummary generate_corpus(const GenerateOptions& options, const fs::path& folder, int threads,
+                                const FramesDone& frames_done, const StopToken& stop) {
+    if (options.frames < 1) throw UsageError("a corpus needs at least one frame: give --frames");
+    refuse_occupied(folder);
+    const std::unique_ptr<TakeSource> source = procedural_takes(options);
+
+    const fs::path incomplete = folder.string() + ".incomplete";
+    std::error_code error;
+    fs::remove_all(incomplete, error);
+    if (error) throw create_error("replace", incomplete, error.value());
+    make_folder(incomplete);
+    const Annotations annotations =
+        write_takes(*source, incomplete, options.format, threads, frames_done, stop);
+    write_file_atomically(incomplete / "truth.csv", write_truth_csv(annotations.truth));
+    write_file_atomically(incomplete / "cycles.csv", write_cycles_csv(annotations.cycles));
+    fs::rename(incomplete, folder, error);
+    if (error) throw create_error("create", folder, error.value());
+    return {.frames = options.frames,
+            .takes = source->takes(),
+            .subjects = source->subjects(),
+            .segments = static_cast<int64_t>(annotations.truth.size()),
+            .cycles = static_cast<int64_t>(annotations.cycles.size())};
+}
+
+}  // namespace kinetome
