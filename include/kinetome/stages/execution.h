@@ -1,0 +1,35 @@
+// Carrying out a plan: each piece of work is reused when its key is complete, else made.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "kinetome/base/log.h"
+#include "kinetome/base/resources.h"
+#include "kinetome/base/stop.h"
+#include "kinetome/run/workspace.h"
+#include "kinetome/stages/plan.h"
+
+namespace kinetome {
+
+/// What of a plan is to be carried out now.
+struct Selection {
+    std::set<std::string> stages;  ///< empty: all
+    std::optional<Slice> slice;    ///< of the shards; stages that make one file are left out then
+};
+
+/// Finished work by position in the plan; nothing where it was neither found nor selected.
+using FinishedPlan = std::vector<std::optional<FinishedWork>>;
+
+/// Makes or finds the selected work, finds the rest. Throws Interrupted between pieces of work,
+/// CreateError when the disk has too little room for what is to be made, and UsageError when
+/// selected work needs inputs that are neither finished nor selected.
+FinishedPlan carry_out(const RunPlan& plan, const Selection& selection, const Workspace& workspace,
+                       const Resources& resources, const Log& log, const StopToken& stop);
+
+/// Finds what is finished and makes nothing.
+FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace);
+
+}  // namespace kinetome

@@ -1,0 +1,37 @@
+// Tables that users take out of a store (design §7, CSV contracts).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "kinetome/run/generation.h"
+
+namespace kinetome {
+
+/// A table of texts, whole numbers and numbers.
+struct Table {
+    using Cell = std::variant<std::string, int64_t, double>;
+    std::vector<std::string> columns;
+    std::vector<std::vector<Cell>> rows;
+};
+
+enum class TableFormat { csv, json };
+
+/// Throws UsageError for another name.
+TableFormat parse_table_format(std::string_view name);
+
+/// CSV by RFC 4180, text cells guarded against spreadsheet formulas; or a JSON array of objects.
+std::string write_table(const Table& table, TableFormat format);
+
+/// clip,source,class,rate,frames,state,reason
+Table clip_table(const Generation& generation);
+
+/// clip,first,end,letter: frames at the source's rate, from 0, end exclusive.
+Table letter_table(const Generation& generation);
+
+/// WHAT of `export`, by name. Throws UsageError listing what there is.
+Table export_table(const Generation& generation, std::string_view what);
+
+}  // namespace kinetome

@@ -1,0 +1,80 @@
+// Every option of `reindex`, one struct a stage, and one table that names them all: flags, keys of
+// the configuration file, config.toml and stage keys are made from its rows.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinetome/formats/asf_amc.h"
+#include "kinetome/models/pose_clusters.h"
+#include "kinetome/models/subject_partition.h"
+
+namespace kinetome {
+
+struct FrameOptions {
+    AmcOptions amc;                 ///< reading of AMC takes
+    std::string joint_map;          ///< TOML file that names the joints of an unknown rig; "" none
+    int64_t shard_frames = 65'536;  ///< mean frames of a shard
+    std::string compression = "none";  ///< of artifacts: none, gzip, blosc
+};
+
+struct FeatureOptions {
+    double pose_rate = 120;               ///< frames a second of pose vectors and markers (S1)
+    double effector_rate = 30;            ///< frames a second of effector features (S3)
+    double velocity_reach = 2.0 / 120.0;  ///< seconds to either side of a velocity's difference
+};
+
+struct PartitionOptions {
+    PartitionRule rule = PartitionRule::automatic;  ///< which clips share pose clusters
+    std::string subject_from;  ///< expression on a take's path whose first group is its subject
+};
+
+struct StringOptions {
+    double longest_submotion = 200.0 / 120.0;  ///< λ′ in seconds (S1 §3.6: 200 frames)
+    double tau = 0;                            ///< τ of Eq. 2; 0: the median adjacent distance
+};
+
+struct ReindexOptions {
+    FrameOptions frames;
+    FeatureOptions features;
+    PartitionOptions partition;
+    PoseClusterOptions pose_clusters;
+    StringOptions motion_strings;
+};
+
+/// Every option at the paper's value, where the default departs from it (docs/methods.md).
+ReindexOptions paper_options();
+
+/// What a value looks like in a configuration file.
+enum class OptionKind { number, text };
+
+/// One option: bound to the ReindexOptions it was made from, which must outlive it.
+struct OptionRow {
+    std::string name;   ///< "shard-frames"
+    std::string stage;  ///< the first stage whose result it changes; "" when it changes none
+    OptionKind kind;
+    std::string help;
+    std::function<std::string()> get;
+    /// Throws UsageError naming option and text.
+    std::function<void(const std::string&)> set;
+};
+
+std::vector<OptionRow> option_rows(ReindexOptions& options);
+
+/// Reads a configuration file over `options`. Throws UsageError naming file and line for a syntax
+/// error, an unknown name or a bad value.
+void read_configuration(const std::filesystem::path& file, ReindexOptions& options);
+
+/// All options as a configuration file, defaults written out, with their help as comments.
+std::string write_configuration(const ReindexOptions& options);
+/// The text form back; `origin` is named in errors.
+void parse_configuration(std::string_view toml, const std::string& origin, ReindexOptions& options);
+
+/// Throws UsageError when values contradict each other or are out of range.
+void check_options(const ReindexOptions& options);
+
+}  // namespace kinetome

@@ -1,0 +1,70 @@
+// What a stage is to the run: a typed row that says what it needs, what it makes and what its
+// result depends on (design §4). The rows are in table.cpp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinetome/base/log.h"
+#include "kinetome/base/resources.h"
+#include "kinetome/base/stop.h"
+#include "kinetome/run/ledger.h"
+#include "kinetome/run/shard_plan.h"
+#include "kinetome/run/workspace.h"
+#include "kinetome/stages/options.h"
+#include "kinetome/stages/survey.h"
+
+namespace kinetome {
+
+/// What every stage is given.
+struct StageContext {
+    const Survey& survey;
+    const std::vector<Shard>& shards;
+    const ReindexOptions& options;
+    const Resources& resources;
+    const Workspace& workspace;
+    const Log& log;
+    StopToken stop;
+};
+
+/// One artifact to be made.
+struct StageTask {
+    std::filesystem::path output;  ///< final name in the run folder
+    ArtifactHeader header;
+    const Shard* shard = nullptr;  ///< null for stages that make one file
+    /// Finished inputs: those of the same shard for a sharded stage, else of all shards in order.
+    std::vector<FinishedWork> inputs;
+
+    /// The inputs that a stage made.
+    std::vector<const FinishedWork*> inputs_of(std::string_view stage) const;
+};
+
+struct StageResult {
+    ArtifactRecord file;
+    std::vector<ClipOutcome> clips;
+};
+
+struct StageRow {
+    std::string name;                 ///< also the artifact's name
+    std::vector<std::string> inputs;  ///< stages before it whose artifacts it reads
+    bool sharded;                     ///< one file a shard, or one file
+    int format_version;               ///< raised when the same inputs give another result
+    std::string description;
+    StageResult (*make)(const StageContext&, const StageTask&);
+
+    std::string file_name(const Shard* shard) const;
+};
+
+/// All stages, inputs before those who need them.
+const std::vector<StageRow>& stage_table();
+/// Throws UsageError listing the names when there is none of that name.
+const StageRow& stage_named(std::string_view name);
+
+StageResult make_frames(const StageContext& context, const StageTask& task);
+StageResult make_features(const StageContext& context, const StageTask& task);
+StageResult make_pose_clusters(const StageContext& context, const StageTask& task);
+StageResult make_motion_strings(const StageContext& context, const StageTask& task);
+
+}  // namespace kinetome

@@ -1,0 +1,45 @@
+// A command as a row: its name, what it does, an example, and how it is set up.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/log.h"
+#include "kinetome/base/resources.h"
+#include "kinetome/base/stop.h"
+#include "options.h"
+
+namespace kinetome::cli {
+
+/// What main hands to the command that was chosen.
+struct Invocation {
+    const CommonOptions& common;
+    const Log& log;
+    StopToken stop;
+    Resources resources() const { return granted_resources(common.threads, common.memory); }
+};
+
+using Run = std::function<ExitCode(const Invocation&)>;
+
+struct Command {
+    std::string name;
+    std::string summary;
+    std::string example;
+    /// Adds the command's options to `app` and returns what runs it.
+    std::function<Run(CLI::App& app)> set_up;
+};
+
+Command reindex_command();
+Command ingest_command();
+Command publish_command();
+Command generate_command();
+Command info_command();
+Command verify_command();
+Command gc_command();
+Command diff_command();
+Command export_command();
+
+}  // namespace kinetome::cli

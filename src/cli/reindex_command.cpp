@@ -1,0 +1,31 @@
+#include "command.h"
+#include "kinetome/stages/reindex.h"
+#include "print_summary.h"
+
+namespace kinetome::cli {
+
+Command reindex_command() {
+    return {
+        "reindex", "index a folder of takes: everything, incrementally, and publish (the main job)",
+        "kinetome reindex takes/ --store motion.store --threads 8", [](CLI::App& app) -> Run {
+            auto request = std::make_shared<ReindexRequest>();
+            auto flags = std::make_shared<ReindexFlags>(app);
+            auto only = std::make_shared<std::vector<std::string>>();
+            app.add_option("CORPUS", request->corpus, "folder of takes")->required();
+            app.add_option("--store", request->store, "store to write to")->required();
+            app.add_option("--only", *only, "stages to bring up to date, separated by commas")
+                ->delimiter(',');
+            app.add_flag("--copy", request->copy,
+                         "copy unchanged files into the new generation instead of linking them");
+            return [=](const Invocation& invocation) {
+                request->options = flags->resolve();
+                request->resources = invocation.resources();
+                request->only = {only->begin(), only->end()};
+                const RunSummary summary = reindex(*request, invocation.log, invocation.stop);
+                print_summary(summary);
+                return exit_code_of(summary);
+            };
+        }};
+}
+
+}  // namespace kinetome::cli

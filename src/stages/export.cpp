@@ -1,0 +1,128 @@
+#include "kinetome/stages/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "kinetome/base/csv.h"
+#include "kinetome/base/error.h"
+#include "kinetome/formats/resample.h"
+#include "kinetome/store/json_text.h"
+
+namespace kinetome {
+namespace {
+
+std::string number_text(const Table::Cell& cell) {
+    if (const auto* whole = std::get_if<int64_t>(&cell)) return fmt::format("{}", *whole);
+    return fmt::format("{}", std::get<double>(cell));
+}
+
+std::string write_csv(const Table& table) {
+    std::string text;
+    append_csv_line(text, table.columns);
+    for (const auto& row : table.rows) {
+        std::vector<std::string> cells;
+        for (const Table::Cell& cell : row) {
+            const auto* words = std::get_if<std::string>(&cell);
+            cells.push_back(words ? csv_text(*words) : number_text(cell));
+        }
+        append_csv_line(text, cells);
+    }
+    return text;
+}
+
+std::string write_json(const Table& table) {
+    Json rows = Json::array();
+    for (const auto& row : table.rows) {
+        Json object = Json::object();
+        for (size_t i = 0; i < row.size(); ++i) {
+            std::visit([&](const auto& value) { object[table.columns[i]] = value; }, row[i]);
+        }
+        rows.push_back(std::move(object));
+    }
+    return dump_json(rows, 1) + "\n";
+}
+
+/// Letters of one partition; frames at the pose rate become frames of the source: a source frame
+/// has the letter of the analysis frame it falls on or follows.
+void append_letters(const ArtifactReader& file, const std::string& partition, Table& table) {
+    struct ClipRow {
+        std::string name;
+        int64_t frames, source_frames;
+        double rate;
+    };
+    std::map<int64_t, ClipRow> clips;
+    const auto ids = file.read<int64_t>(partition + "/clips/id");
+    const auto names = file.read_texts(partition + "/clips/name");
+    const auto frames = file.read<int64_t>(partition + "/clips/frames");
+    const auto source_frames = file.read<int64_t>(partition + "/clips/source_frames");
+    const auto rates = file.read<double>(partition + "/clips/source_rate");
+    for (size_t i = 0; i < ids.size(); ++i) {
+        clips[ids[i]] = {names[i], frames[i], source_frames[i], rates[i]};
+    }
+    const double pose_rate = file.read<double>(partition + "/pose_rate").at(0);
+    const auto letters = file.read<int32_t>(partition + "/letters/letter");
+    const auto clip_of = file.read<int64_t>(partition + "/letters/clip");
+    const auto first = file.read<int32_t>(partition + "/letters/first_frame");
+    const auto end = file.read<int32_t>(partition + "/letters/end_frame");
+    for (size_t j = 0; j < letters.size(); ++j) {
+        const ClipRow& clip = clips.at(clip_of[j]);
+        const auto in_source = [&](int64_t frame) {
+            if (frame == clip.frames) return clip.source_frames;
+            return static_cast<int64_t>(std::ceil(source_frame(frame, clip.rate, pose_rate)));
+        };
+        const int64_t source_first = in_source(first[j]), source_end = in_source(end[j]);
+        if (source_first == source_end) continue;  // a letter shorter than a frame of the source
+        table.rows.push_back({clip.name, source_first, source_end, int64_t{letters[j]}});
+    }
+}
+
+}  // namespace
+
+TableFormat parse_table_format(std::string_view name) {
+    if (name == "csv") return TableFormat::csv;
+    if (name == "json") return TableFormat::json;
+    throw UsageError(fmt::format("--format {}: expected csv or json", name));
+}
+
+std::string write_table(const Table& table, TableFormat format) {
+    return format == TableFormat::csv ? write_csv(table) : write_json(table);
+}
+
+Table clip_table(const Generation& generation) {
+    Table table{{"clip", "source", "class", "rate", "frames", "state", "reason"}, {}};
+    for (const CatalogClip& clip : generation.catalog().clips) {
+        std::string state = clip.indexed() ? "indexed" : "quarantined", reason = clip.quarantined;
+        if (clip.indexed() && !clip.skipped.empty()) {
+            state = "skipped by " + clip.skipped.begin()->first;
+            reason = clip.skipped.begin()->second;
+        }
+        table.rows.push_back(
+            {clip.name, clip.source, clip.clip_class, clip.rate, clip.frames, state, reason});
+    }
+    return table;
+}
+
+Table letter_table(const Generation& generation) {
+    Table table{{"clip", "first", "end", "letter"}, {}};
+    const ArtifactReader file = generation.open("motion_strings.h5");
+    const std::string suffix = "/letters/letter";
+    for (const DatasetSpec& spec : file.datasets()) {
+        if (!spec.path.ends_with(suffix)) continue;
+        append_letters(file, spec.path.substr(0, spec.path.size() - suffix.size()), table);
+    }
+    std::stable_sort(table.rows.begin(), table.rows.end(), [](const auto& a, const auto& b) {
+        return std::get<std::string>(a[0]) < std::get<std::string>(b[0]);
+    });
+    return table;
+}
+
+Table export_table(const Generation& generation, std::string_view what) {
+    if (what == "clips") return clip_table(generation);
+    if (what == "letters") return letter_table(generation);
+    throw UsageError(fmt::format("cannot export '{}': there are clips, letters", what));
+}
+
+}  // namespace kinetome

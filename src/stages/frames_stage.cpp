@@ -1,0 +1,179 @@
+// frames: read → parse → kinematics → write, as a pipeline with a bounded number of takes in it.
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/base/progress.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/formats/asf_amc.h"
+#include "kinetome/formats/joint_roles.h"
+#include "kinetome/formats/kinematics.h"
+#include "kinetome/formats/take_format.h"
+#include "kinetome/stages/stage.h"
+#include "kinetome/store/frame_store.h"
+
+namespace kinetome {
+namespace {
+
+/// Memory that a take needs between being read and being written, per byte of its source.
+constexpr uint64_t working_bytes_per_source_byte = 4;
+
+/// A skeleton file, parsed once and shared by its takes; the error is kept for each of them.
+class SkeletonFiles {
+  public:
+    SkeletonFiles(const StageContext& context) : context_(context) {
+        const std::string& map = context.options.frames.joint_map;
+        if (!map.empty()) joint_map_ = load_joint_map(map);
+    }
+
+    /// Parsed skeleton with roles and the digest of its bytes. Throws InputError.
+    struct Entry {
+        std::shared_ptr<const Skeleton> skeleton;
+        Digest content;
+        std::string error;
+    };
+    const Entry& get(const std::string& source) {
+        const std::lock_guard lock(mutex_);
+        const auto [found, is_new] = entries_.try_emplace(source);
+        if (is_new) load(source, found->second);
+        return found->second;
+    }
+    /// A copy of a skeleton whose joints have their roles. Throws InputError.
+    std::shared_ptr<const Skeleton> with_roles(const Skeleton& skeleton,
+                                               const std::string& path) const {
+        auto copy = std::make_shared<Skeleton>(skeleton);
+        assign_roles(*copy, path, joint_map_ ? &*joint_map_ : nullptr);
+        return copy;
+    }
+
+  private:
+    void load(const std::string& source, Entry& entry) {
+        try {
+            const std::string bytes = read_source_file(context_.survey.corpus / source);
+            entry.content = digest_of(bytes);
+            const std::string path = path_for_message(source);
+            entry.skeleton = with_roles(parse_asf(bytes, path), path);
+        } catch (const InputError& error) {
+            entry.error = error.what();
+        }
+    }
+
+    const StageContext& context_;
+    std::optional<JointMap> joint_map_;
+    std::mutex mutex_;
+    std::map<std::string, Entry> entries_;
+};
+
+/// One take on its way through the pipeline.
+struct Passenger {
+    const Take* take = nullptr;
+    std::optional<StoredClip> clip;
+    ClipOutcome outcome;
+};
+
+std::vector<std::string> capabilities_of(const Skeleton& skeleton) {
+    std::vector<std::string> capabilities;
+    if (skeleton.dof_count() > 0) capabilities.push_back("angles");
+    if (skeleton.role(JointRole::head) >= 0) capabilities.push_back("effectors");
+    capabilities.push_back("markers");
+    return capabilities;
+}
+
+void check_unchanged(const Take& take, const std::string& bytes, const Digest& skeleton) {
+    if (content_digest(bytes, skeleton) == take.content) return;
+    throw StoreError(take.source + ": changed while it was being read; run the same command again");
+}
+
+void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& passenger) {
+    const Take& take = *passenger.take;
+    passenger.outcome.clip = take.name;
+    try {
+        const std::string bytes = read_source_file(context.survey.corpus / take.source);
+        const TakeFormat& format =
+            *find_take_format(std::filesystem::path(take.source).extension().string());
+        TakeSource source{.bytes = bytes,
+                          .path = path_for_message(take.source),
+                          .skeleton = nullptr,
+                          .default_rate = context.options.frames.amc.rate};
+        Digest skeleton_content;
+        if (!take.skeleton_source.empty()) {
+            const SkeletonFiles::Entry& entry = skeletons.get(take.skeleton_source);
+            if (!entry.skeleton) throw InputError(entry.error);
+            source.skeleton = entry.skeleton;
+            skeleton_content = entry.content;
+        }
+        check_unchanged(take, bytes, skeleton_content);
+        StoredClip stored{take.name, format.parse(source), {}};
+        if (!source.skeleton) {
+            stored.clip.skeleton = skeletons.with_roles(*stored.clip.skeleton, source.path);
+        }
+        stored.positions = joint_positions(stored.clip);
+
+        passenger.outcome.frames = stored.clip.frames();
+        passenger.outcome.rate = stored.clip.rate;
+        passenger.outcome.clip_class = stored.clip.skeleton->class_name();
+        passenger.outcome.capabilities = capabilities_of(*stored.clip.skeleton);
+        passenger.clip = std::move(stored);
+    } catch (const InputError& error) {
+        passenger.outcome.quarantined = error.what();
+    }
+}
+
+/// Takes that may be in the pipeline at once: two a thread, fewer when the largest ones would not
+/// fit in a quarter of the memory granted.
+size_t takes_in_flight(const StageContext& context, const Shard& shard) {
+    uint64_t largest = 1;
+    for (const size_t i : shard.clips) largest = std::max(largest, context.survey.takes[i].bytes);
+    const uint64_t fitting =
+        context.resources.memory_bytes / 4 / (largest * working_bytes_per_source_byte);
+    return std::clamp<uint64_t>(fitting, 1, 2 * static_cast<uint64_t>(context.resources.threads));
+}
+
+}  // namespace
+
+StageResult make_frames(const StageContext& context, const StageTask& task) {
+    const Shard& shard = *task.shard;
+    FrameShardWriter writer(task.output, task.header,
+                            parse_compression(context.options.frames.compression));
+    SkeletonFiles skeletons(context);
+    Progress progress(context.log, "frames " + shard.cut, shard.claimed_frames, "frames");
+    StageResult result;
+
+    auto next = shard.clips.begin();
+    using Token = std::shared_ptr<Passenger>;
+    const auto read = [&](tbb::flow_control& control) -> Token {
+        while (next != shard.clips.end() && !context.survey.takes[*next].quarantined.empty())
+            ++next;
+        if (next == shard.clips.end() || context.stop.requested()) {
+            control.stop();
+            return nullptr;
+        }
+        return std::make_shared<Passenger>(Passenger{&context.survey.takes[*next++], {}, {}});
+    };
+    const auto work = [&](Token passenger) {
+        parse(context, skeletons, *passenger);
+        return passenger;
+    };
+    const auto write = [&](const Token& passenger) {
+        if (passenger->clip) writer.add(*passenger->clip);
+        result.clips.push_back(std::move(passenger->outcome));
+        progress.advance(passenger->take->claimed_frames);
+    };
+    tbb::parallel_pipeline(
+        takes_in_flight(context, shard),
+        tbb::make_filter<void, Token>(tbb::filter_mode::serial_in_order, read) &
+            tbb::make_filter<Token, Token>(tbb::filter_mode::parallel, work) &
+            tbb::make_filter<Token, void>(tbb::filter_mode::serial_in_order, write));
+    context.stop.check();
+    result.file = writer.close();
+    return result;
+}
+
+}  // namespace kinetome

@@ -1,0 +1,271 @@
+#include "kinetome/stages/options.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <regex>
+#include <sstream>
+#include <utility>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/base/pieces.h"
+#include "kinetome/store/artifact.h"
+
+namespace kinetome {
+namespace {
+
+[[noreturn]] void refuse(const std::string& name, const std::string& text,
+                         const std::string& want) {
+    throw UsageError(fmt::format("{} = '{}': expected {}", name, text, want));
+}
+
+/// Text of a value and back; one overload a type that an option may have.
+template <class T>
+requires(std::integral<T> || std::floating_point<T>) struct ValueText {
+    static constexpr OptionKind kind = OptionKind::number;
+    static std::string get(T value) { return fmt::format("{}", value); }
+    static void set(const std::string& name, const std::string& text, T& value) {
+        T parsed{};
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+        if (error != std::errc() || end != text.data() + text.size()) {
+            refuse(name, text, std::integral<T> ? "a whole number" : "a number");
+        }
+        value = parsed;
+    }
+};
+
+template <class T>
+OptionRow number(std::string name, std::string stage, T& value, std::string help) {
+    return {name,
+            std::move(stage),
+            OptionKind::number,
+            std::move(help),
+            [&value] { return ValueText<T>::get(value); },
+            [&value, name](const std::string& text) { ValueText<T>::set(name, text, value); }};
+}
+
+OptionRow text_option(std::string name, std::string stage, std::string& value, std::string help) {
+    return {std::move(name),
+            std::move(stage),
+            OptionKind::text,
+            std::move(help),
+            [&value] { return value; },
+            [&value](const std::string& text) { value = text; }};
+}
+
+template <class E, size_t n>
+OptionRow choice(std::string name, std::string stage, E& value,
+                 const std::array<std::pair<const char*, E>, n>& names, std::string help) {
+    std::vector<std::string> all;
+    for (const auto& [text, one] : names) all.emplace_back(text);
+    help += fmt::format(" ({})", fmt::join(all, "|"));
+    return {name,
+            std::move(stage),
+            OptionKind::text,
+            std::move(help),
+            [&value, names] {
+                for (const auto& [text, one] : names) {
+                    if (one == value) return std::string(text);
+                }
+                return std::string();
+            },
+            [&value, names, name, all](const std::string& text) {
+                for (const auto& [known, one] : names) {
+                    if (text == known) {
+                        value = one;
+                        return;
+                    }
+                }
+                refuse(name, text, fmt::format("one of {}", fmt::join(all, ", ")));
+            }};
+}
+
+OptionRow count_list(std::string name, std::string stage, std::vector<int64_t>& values,
+                     std::string help) {
+    return {name,
+            std::move(stage),
+            OptionKind::text,
+            std::move(help),
+            [&values] { return fmt::format("{}", fmt::join(values, ",")); },
+            [&values, name](const std::string& text) {
+                std::vector<int64_t> parsed;
+                std::istringstream parts(text);
+                for (std::string part; std::getline(parts, part, ',');) {
+                    ValueText<int64_t>::set(name, part, parsed.emplace_back());
+                }
+                values = std::move(parsed);
+            }};
+}
+
+constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
+                                        std::pair{"subject", PartitionRule::subject},
+                                        std::pair{"auto", PartitionRule::automatic}};
+constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ratio},
+                                         std::pair{"bic", ClusterCountRule::bic}};
+
+/// One value as the option's text, from whatever TOML type it has.
+std::string toml_text(const std::string& origin, const std::string& name, const toml::node& node) {
+    if (const auto value = node.value_exact<std::string>()) return *value;
+    if (const auto value = node.value_exact<int64_t>()) return fmt::format("{}", *value);
+    if (const auto value = node.value_exact<double>()) return fmt::format("{}", *value);
+    if (const toml::array* array = node.as_array()) {
+        std::vector<std::string> parts;
+        for (const toml::node& part : *array) parts.push_back(toml_text(origin, name, part));
+        return fmt::format("{}", fmt::join(parts, ","));
+    }
+    throw UsageError(fmt::format("{}:{}: {} must be a number or a text", origin,
+                                 node.source().begin.line, name));
+}
+
+std::string quoted(const std::string& text) {
+    std::ostringstream out;
+    out << toml::value<std::string>(text);
+    return out.str();
+}
+
+void require(bool holds, const std::string& what) {
+    if (!holds) throw UsageError(what);
+}
+
+}  // namespace
+
+std::vector<OptionRow> option_rows(ReindexOptions& o) {
+    PoseClusterOptions& p = o.pose_clusters;
+    MixtureOptions& m = p.mixture;
+    return {
+        number("amc-rate", "frames", o.frames.amc.rate,
+               "frames a second of AMC takes, which do not state it"),
+        text_option("joint-map", "", o.frames.joint_map,
+                    "TOML file: which joint has which role, for rigs with unknown names"),
+        number("shard-frames", "files", o.frames.shard_frames, "mean frames of a shard file"),
+        text_option("compression", "files", o.frames.compression, "of artifacts (none|gzip|blosc)"),
+        number("pose-rate", "features", o.features.pose_rate,
+               "frames a second of pose vectors and markers"),
+        number("effector-rate", "features", o.features.effector_rate,
+               "frames a second of effector features"),
+        number("velocity-reach", "features", o.features.velocity_reach,
+               "seconds to either side of a velocity's difference"),
+        choice("partition", "pose_clusters", o.partition.rule, partition_names,
+               "which clips share pose clusters; auto: by subject above 50,000 frames"),
+        text_option("subject-from", "pose_clusters", o.partition.subject_from,
+                    "regular expression on a take's path whose first group is its subject; "
+                    "empty: the parent folder"),
+        number("variance-share", "pose_clusters", p.variance_share,
+               "share of the variance that the principal components keep"),
+        choice("cluster-rule", "pose_clusters", p.count_rule, count_rule_names,
+               "how the number of clusters is chosen when it is not given"),
+        number("clusters", "pose_clusters", p.clusters, "number of clusters; 0: by cluster-rule"),
+        number("frames-per-cluster", "pose_clusters", p.frames_per_cluster,
+               "clusters = frames / this, when cluster-rule is ratio"),
+        number("least-clusters", "pose_clusters", p.least_clusters, "at least so many clusters"),
+        number("most-clusters", "pose_clusters", p.most_clusters, "at most so many clusters"),
+        count_list("bic-clusters", "pose_clusters", p.bic_clusters,
+                   "numbers of clusters to try, separated by commas, when cluster-rule is bic"),
+        number("max-iterations", "pose_clusters", m.max_iterations, "EM iterations at most"),
+        number("min-gain", "pose_clusters", m.min_gain,
+               "EM stops when the mean log-likelihood gains less (nats)"),
+        number("variance-floor", "pose_clusters", m.variance_floor,
+               "least variance of a cluster, as a share of the data's per-dimension variance"),
+        number("seed", "pose_clusters", m.seed, "seed of the k-means++ start"),
+        number("restarts", "pose_clusters", m.restarts,
+               "starts of EM; the one of highest likelihood is kept"),
+        number("start-sample", "pose_clusters", m.start_sample,
+               "frames that the start is drawn from, at most"),
+        number("longest-submotion", "motion_strings", o.motion_strings.longest_submotion,
+               "longest submotion λ′, seconds"),
+        number("tau", "motion_strings", o.motion_strings.tau,
+               "distance below which letters are equal; 0: the median adjacent distance"),
+    };
+}
+
+ReindexOptions paper_options() {
+    ReindexOptions options;
+    options.partition.rule = PartitionRule::none;  // S1 clusters each database as a whole
+    return options;
+}
+
+void parse_configuration(std::string_view text, const std::string& origin,
+                         ReindexOptions& options) {
+    toml::table table;
+    try {
+        table = toml::parse(text, origin);
+    } catch (const toml::parse_error& error) {
+        throw UsageError(
+            fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
+    }
+    auto rows = option_rows(options);
+    for (const auto& [key, node] : table) {
+        const std::string name(key.str());
+        const auto row = std::find_if(rows.begin(), rows.end(),
+                                      [&](const OptionRow& r) { return r.name == name; });
+        if (row == rows.end()) {
+            throw UsageError(fmt::format("{}:{}: no option is called '{}'", origin,
+                                         node.source().begin.line, name));
+        }
+        try {
+            row->set(toml_text(origin, name, node));
+        } catch (const UsageError& error) {
+            throw UsageError(
+                fmt::format("{}:{}: {}", origin, node.source().begin.line, error.what()));
+        }
+    }
+}
+
+void read_configuration(const std::filesystem::path& file, ReindexOptions& options) {
+    if (!std::filesystem::is_regular_file(file)) {
+        throw UsageError(file.string() + ": no such configuration file");
+    }
+    parse_configuration(read_file(file), file.string(), options);
+}
+
+std::string write_configuration(const ReindexOptions& options) {
+    ReindexOptions copy = options;
+    std::string text =
+        "# Options in force, defaults written out. `kinetome reindex --config` reads it.\n";
+    for (const OptionRow& row : option_rows(copy)) {
+        const std::string value = row.get();
+        text += fmt::format("\n# {}\n{} = {}\n", row.help, row.name,
+                            row.kind == OptionKind::text ? quoted(value) : value);
+    }
+    return text;
+}
+
+void check_options(const ReindexOptions& o) {
+    const PoseClusterOptions& p = o.pose_clusters;
+    const MixtureOptions& m = p.mixture;
+    require(o.frames.amc.rate > 0, "amc-rate must be above 0");
+    require(o.frames.shard_frames >= group_frames,
+            fmt::format("shard-frames must be at least {}", group_frames));
+    parse_compression(o.frames.compression);
+    require(o.features.pose_rate > 0 && o.features.effector_rate > 0,
+            "pose-rate and effector-rate must be above 0");
+    require(o.features.velocity_reach > 0, "velocity-reach must be above 0");
+    require(p.variance_share > 0 && p.variance_share <= 1, "variance-share must be in (0, 1]");
+    require(p.clusters >= 0, "clusters must not be negative");
+    require(p.count_rule != ClusterCountRule::bic || !p.bic_clusters.empty(),
+            "cluster-rule bic needs bic-clusters, for example 100,200,400");
+    for (const int64_t clusters : p.bic_clusters) {
+        require(clusters > 0, "bic-clusters must be above 0");
+    }
+    require(p.frames_per_cluster > 0, "frames-per-cluster must be above 0");
+    require(p.least_clusters > 0 && p.least_clusters <= p.most_clusters,
+            "least-clusters must be above 0 and not above most-clusters");
+    require(m.max_iterations > 0 && m.restarts > 0 && m.start_sample > 0,
+            "max-iterations, restarts and start-sample must be above 0");
+    require(m.variance_floor > 0, "variance-floor must be above 0");
+    require(o.motion_strings.longest_submotion > 0, "longest-submotion must be above 0");
+    require(o.motion_strings.tau >= 0, "tau must not be negative");
+    try {
+        const std::regex expression(o.partition.subject_from);
+        require(o.partition.subject_from.empty() || expression.mark_count() >= 1,
+                "subject-from needs a group, such as 'subject_(\\d+)'");
+    } catch (const std::regex_error& error) {
+        throw UsageError(fmt::format("subject-from: {}", error.what()));
+    }
+}
+
+}  // namespace kinetome

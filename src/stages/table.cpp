@@ -1,0 +1,61 @@
+// Every stage of the program. Read this first.
+#include <fmt/format.h>
+
+#include "kinetome/base/error.h"
+#include "kinetome/stages/stage.h"
+
+namespace kinetome {
+
+const std::vector<StageRow>& stage_table() {
+    static const std::vector<StageRow> table = {
+        {.name = "frames",
+         .inputs = {},
+         .sharded = true,
+         .format_version = 1,
+         .description = "takes parsed to degrees of freedom and joint positions",
+         .make = make_frames},
+        {.name = "features",
+         .inputs = {"frames"},
+         .sharded = true,
+         .format_version = 1,
+         .description = "pose vectors (S1), effector features (S3), marker sets (S2)",
+         .make = make_features},
+        {.name = "pose_clusters",
+         .inputs = {"features"},
+         .sharded = false,
+         .format_version = 1,
+         .description = "principal components and a mixture of isotropic Gaussians (S1 §3.2)",
+         .make = make_pose_clusters},
+        {.name = "motion_strings",
+         .inputs = {"features", "pose_clusters"},
+         .sharded = false,
+         .format_version = 1,
+         .description = "letters, accessibility, τ and λ (S1 §3.2, §3.6)",
+         .make = make_motion_strings},
+    };
+    return table;
+}
+
+const StageRow& stage_named(std::string_view name) {
+    std::vector<std::string> names;
+    for (const StageRow& row : stage_table()) {
+        if (row.name == name) return row;
+        names.push_back(row.name);
+    }
+    throw UsageError(
+        fmt::format("no stage is called '{}'; there are {}", name, fmt::join(names, ", ")));
+}
+
+std::string StageRow::file_name(const Shard* shard) const {
+    return shard ? name + "-" + shard->cut + ".h5" : name + ".h5";
+}
+
+std::vector<const FinishedWork*> StageTask::inputs_of(std::string_view stage) const {
+    std::vector<const FinishedWork*> found;
+    for (const FinishedWork& work : inputs) {
+        if (work.receipt.stage == stage) found.push_back(&work);
+    }
+    return found;
+}
+
+}  // namespace kinetome
