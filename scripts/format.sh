@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# format.sh [--check]: format all C++ sources, or say which are not formatted.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+mode=(-i)
+[ "${1:-}" = --check ] && mode=(--dry-run --Werror)
+git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format "${mode[@]}"

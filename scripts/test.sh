@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# test.sh: install, check the formatting, build, run all tests, and the quick ones under sanitizers.
+# Tests on real motion run when KINETOME_TEST_CORPUS names a folder with cmu/ and labels/.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+
+scripts/setup.sh
+scripts/format.sh --check
+scripts/build.sh release
+ctest --preset release -j "$(nproc)"
+for sanitizer in asan tsan; do
+  scripts/build.sh "$sanitizer" unit_tests
+  ctest --preset "$sanitizer" -j "$(nproc)"
+done
