@@ -3,8 +3,7 @@
 // Irregular work (files, clips) goes to oneTBB instead, never one inside the other.
 #pragma once
 
-#include <omp.h>
-
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <exception>
@@ -12,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,8 +19,23 @@
 
 namespace kinetome {
 
-/// Calls body(i) for i in [0, count), items handed out in order to `threads` OpenMP threads. After
-/// a throw no further item starts; the exception of the lowest index that threw is rethrown.
+/// Runs worker() on `threads` threads at once, this one among them; it must not throw.
+template <class Worker>
+void run_team(int threads, const Worker& worker) {
+#ifdef __SANITIZE_THREAD__
+    // The thread sanitizer cannot see libgomp's barriers and would report every loop.
+    std::vector<std::jthread> team;
+    for (int t = 1; t < threads; ++t) team.emplace_back([&worker] { worker(); });
+    worker();
+#else
+#pragma omp parallel num_threads(threads)
+    worker();
+#endif
+}
+
+/// Calls body(i) for i in [0, count), items handed out in order to `threads` threads. After a throw
+/// no further item starts; the exception of the lowest index is rethrown. All items before that one
+/// have run, so it is the exception a single thread would have met.
 template <class Body>
 void parallel_for(int threads, int64_t count, Body&& body) {
     if (threads <= 1 || count <= 1) {
@@ -32,8 +47,7 @@ void parallel_for(int threads, int64_t count, Body&& body) {
     std::mutex mutex;
     std::exception_ptr error;
     int64_t error_index = count;
-#pragma omp parallel num_threads(threads)
-    {
+    run_team(static_cast<int>(std::min<int64_t>(threads, count)), [&] {
         while (!failed.load(std::memory_order_relaxed)) {
             const int64_t i = next.fetch_add(1, std::memory_order_relaxed);
             if (i >= count) break;
@@ -48,7 +62,7 @@ void parallel_for(int threads, int64_t count, Body&& body) {
                 failed = true;
             }
         }
-    }
+    });
     if (error) std::rethrow_exception(error);
 }
 
