@@ -1,0 +1,123 @@
+#include "lock_holder.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+
+#include "kinetome/base/quote.h"
+
+namespace kinetome {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string host_name() {
+    std::array<char, 256> name{};
+    return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string first_word_of(const fs::path& path) {
+    std::string word;
+    std::ifstream(path) >> word;
+    return word;
+}
+
+std::string own_pid_namespace() {
+    std::error_code ignored;
+    return fs::read_symlink("/proc/self/ns/pid", ignored).string();
+}
+
+struct ProcessStatus {
+    char state = 0;
+    uint64_t started = 0;
+};
+
+/// From /proc/<pid>/stat (proc(5)); nothing when there is none to be read.
+std::optional<ProcessStatus> status_of(pid_t process) {
+    std::ifstream file(fmt::format("/proc/{}/stat", process));
+    std::string line;
+    if (!std::getline(file, line)) return std::nullopt;
+    // The second field is the program's name in parentheses, and may hold anything.
+    std::istringstream fields(line.substr(line.rfind(')') + 1));
+    ProcessStatus status;
+    fields >> status.state;
+    constexpr int from_state_to_start = 19;
+    std::string field;
+    for (int i = 1; i < from_state_to_start; ++i) fields >> field;
+    fields >> status.started;
+    return fields ? std::optional(status) : std::nullopt;
+}
+
+}  // namespace
+
+std::string random_nonce() {
+    std::random_device device;
+    return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+LockHolder this_process() {
+    const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    const auto status = status_of(::getpid());
+    return {.host = host_name(),
+            .boot = first_word_of("/proc/sys/kernel/random/boot_id"),
+            .pid_namespace = own_pid_namespace(),
+            .process = ::getpid(),
+            .started = status ? status->started : 0,
+            .since = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+            .nonce = random_nonce()};
+}
+
+std::string write_holder(const LockHolder& holder) {
+    const nlohmann::ordered_json json{{"host", holder.host},
+                                      {"boot", holder.boot},
+                                      {"pid_namespace", holder.pid_namespace},
+                                      {"process", holder.process},
+                                      {"started", holder.started},
+                                      {"since", holder.since},
+                                      {"nonce", holder.nonce}};
+    return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+std::optional<LockHolder> parse_holder(std::string_view text) {
+    try {
+        const auto json = nlohmann::json::parse(text);
+        return LockHolder{.host = json.at("host"),
+                          .boot = json.at("boot"),
+                          .pid_namespace = json.at("pid_namespace"),
+                          .process = json.at("process"),
+                          .started = json.at("started"),
+                          .since = json.at("since"),
+                          .nonce = json.at("nonce")};
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    }
+}
+
+bool is_gone(const LockHolder& holder) {
+    const LockHolder here = this_process();
+    if (holder.host != here.host) return false;
+    if (holder.boot != here.boot) return true;
+    if (holder.pid_namespace != here.pid_namespace) return false;
+    if (::kill(holder.process, 0) != 0 && errno == ESRCH) return true;
+    const auto status = status_of(holder.process);
+    if (!status) return false;  // exists, but hides from this user
+    const bool ended = status->state == 'Z' || status->state == 'X';
+    return ended || status->started != holder.started;
+}
+
+std::string describe(const LockHolder& holder) {
+    return fmt::format("process {} on {} since {}", holder.process, path_for_message(holder.host),
+                       path_for_message(holder.since));
+}
+
+}  // namespace kinetome

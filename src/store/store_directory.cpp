@@ -1,0 +1,271 @@
+#include "kinetome/store/store_directory.h"
+
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "generation_id.h"
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/store/json_text.h"
+#include "lock_holder.h"
+
+namespace kinetome {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int store_format = 1;
+constexpr std::string_view marker_name = "kinetome_store.json";
+
+std::string shown(const fs::path& path) {
+    return path_for_message(path.string());
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::error_code error;
+    std::vector<std::string> names;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        names.push_back(entry->path().filename().string());
+    }
+    if (error && error != std::errc::no_such_file_or_directory) {
+        throw StoreError(fmt::format("cannot list {}: {}", shown(folder), error.message()));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void make_folder(const fs::path& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) throw create_error("create", path, error.value());
+}
+
+/// False when there is nothing. Throws StoreError when that cannot be told.
+bool exists(const fs::path& path) {
+    std::error_code error;
+    const bool found = fs::exists(path, error);
+    if (error) {
+        throw StoreError(fmt::format("cannot open {}: {}", shown(path), error.message()));
+    }
+    return found;
+}
+
+void rename_folder(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) throw create_error("rename", from, error.value());
+}
+
+void remove_tree(const fs::path& path) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) throw create_error("remove", path, error.value());
+}
+
+void require_known_format(const fs::path& marker) {
+    const Json json = parse_json(read_file(marker), marker, "the mark of a store");
+    const int format = convert_json(json, marker, "the mark of a store", [](const Json& top) {
+        return top.at("kinetome_format").get<int>();
+    });
+    if (format > store_format) {
+        throw StoreError(fmt::format(
+            "{} was made by a newer Kinetome (format {}, this one knows up to {}); use that one",
+            shown(marker.parent_path()), format, store_format));
+    }
+}
+
+/// Whether a store may be made in a folder that holds this: the labels a user prepared, or the mark
+/// that was being written when the last attempt was killed.
+bool may_lie_in_new_store(const std::string& name) {
+    return name == "labels.csv" || name.starts_with(fmt::format(".{}.", marker_name));
+}
+
+void mark_as_store(const fs::path& path) {
+    const auto names = names_in(path);
+    if (!std::all_of(names.begin(), names.end(), may_lie_in_new_store)) {
+        throw CreateError(fmt::format(
+            "{} is not a Kinetome store, and not empty: choose another folder", shown(path)));
+    }
+    write_file_atomically(path / marker_name,
+                          fmt::format("{{\"kinetome_format\":{}}}\n", store_format));
+}
+
+void require_plain_name(const std::string& name) {
+    if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos) {
+        throw UsageError(quote_for_message(name) + " is no name for a slice");
+    }
+}
+
+}  // namespace
+
+StoreDirectory StoreDirectory::open(const fs::path& path) {
+    const fs::path marker = path / marker_name;
+    if (!exists(marker)) {
+        throw StoreError(fmt::format(
+            exists(path) ? "{0} is not a Kinetome store (it has no {1})"
+                         : "there is no store {0}; `kinetome reindex CORPUS --store {0}` makes one",
+            shown(path), marker_name));
+    }
+    require_known_format(marker);
+    return StoreDirectory(path);
+}
+
+StoreDirectory StoreDirectory::open_or_create(const fs::path& path) {
+    make_folder(path);
+    if (!exists(path / marker_name)) mark_as_store(path);
+    StoreDirectory store = open(path);
+    for (const fs::path& folder :
+         {store.generations_folder(), store.scratch(), store.locks_folder() / "slices",
+          store.locks_folder() / "leases"}) {
+        make_folder(folder);
+    }
+    return store;
+}
+
+std::optional<std::string> StoreDirectory::current() const {
+    std::error_code error;
+    const fs::path target = fs::read_symlink(path_ / "current", error);
+    if (error == std::errc::no_such_file_or_directory) return std::nullopt;
+    const std::string id = target.filename().string();
+    if (error || !is_generation_id(id) || !fs::is_directory(generation_folder(id))) {
+        throw StoreError(fmt::format(
+            "{} names no generation of this store; point it at one of {}, or remove it and reindex",
+            shown(path_ / "current"), shown(generations_folder())));
+    }
+    return id;
+}
+
+std::vector<std::string> StoreDirectory::generations() const {
+    std::vector<std::string> ids = names_in(generations_folder());
+    std::erase_if(ids, [](const std::string& name) { return !is_generation_id(name); });
+    return ids;
+}
+
+fs::path StoreDirectory::generation_folder(const std::string& id) const {
+    return generations_folder() / id;
+}
+
+std::string StoreDirectory::resolve_generation(const std::string& text) const {
+    if (text == "current") {
+        if (const auto id = current()) return *id;
+        throw UsageError(fmt::format("{} has no generation yet: reindex first", shown(path_)));
+    }
+    std::vector<std::string> matching = generations();
+    std::erase_if(matching, [&](const std::string& id) { return !id.starts_with(text); });
+    if (matching.size() == 1) return matching.front();
+    throw UsageError(fmt::format(
+        "{} {} of {}: `kinetome info` lists them", quote_for_message(text),
+        matching.empty() ? "is no generation" : "begins the names of several generations",
+        shown(path_)));
+}
+
+StoreLock StoreDirectory::lock_writer() {
+    const fs::path slices = locks_folder() / "slices";
+    make_folder(slices);
+    StoreLock lock = StoreLock::take(locks_folder() / "writer");
+    // Taken and released at once: fails when a slice is held, and clears away those left by the
+    // dead.
+    for (const std::string& name : names_in(slices)) StoreLock::take(slices / name);
+    remove_leftovers();
+    return lock;
+}
+
+StoreLock StoreDirectory::lock_slice(const std::string& name) {
+    require_plain_name(name);
+    const fs::path slices = locks_folder() / "slices";
+    make_folder(slices);
+    StoreLock lock = StoreLock::take(slices / name);
+    // Looked at after the own lock is there, as the writer does: at least one of both sees the
+    // other.
+    if (const auto writer = live_holder(locks_folder() / "writer")) {
+        throw CreateError(fmt::format("{} is being written to by {}: wait until that run ends",
+                                      shown(path_), *writer));
+    }
+    return lock;
+}
+
+StoreLock StoreDirectory::lease(const std::string& generation) const {
+    const fs::path leases = locks_folder() / "leases";
+    StoreLock lease;
+    try {
+        make_folder(leases);
+        lease = StoreLock::take(leases / (generation + "." + random_nonce()));
+    } catch (const CreateError&) {
+        // Then nobody is told of this reader; should its files go, it fails and can be run again.
+    }
+    if (!fs::is_directory(generation_folder(generation))) {
+        throw StoreError(fmt::format("generation {} of {} is gone: run the command again",
+                                     generation, shown(path_)));
+    }
+    return lease;
+}
+
+bool StoreDirectory::leased(const std::string& generation) const {
+    const fs::path leases = locks_folder() / "leases";
+    const auto names = names_in(leases);
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return name.starts_with(generation + ".") && live_holder(leases / name);
+    });
+}
+
+std::vector<std::string> StoreDirectory::remove_old(int keep) {
+    if (keep < 1) throw UsageError("at least one generation must be kept");
+    remove_stale_leases();
+    std::vector<std::string> old = generations(), removed;
+    old.resize(old.size() - std::min(old.size(), static_cast<size_t>(keep)));
+    const auto kept = current();
+    for (const std::string& id : old) {
+        if (id == kept) continue;
+        // A reader takes its lease before it looks for the folder; here the order is the reverse.
+        const fs::path folder = generation_folder(id), away = generations_folder() / (".old-" + id);
+        rename_folder(folder, away);
+        if (leased(id)) {
+            rename_folder(away, folder);
+            continue;
+        }
+        remove_tree(away);
+        removed.push_back(id);
+    }
+    return removed;
+}
+
+void StoreDirectory::remove_leftovers() const {
+    for (const fs::path& folder : {path_, generations_folder()}) {
+        for (const std::string& name : names_in(folder)) {
+            const bool is_leftover = name.starts_with(".new-") || name.starts_with(".old-") ||
+                                     name.starts_with(fmt::format(".{}.", marker_name));
+            if (is_leftover) remove_tree(folder / name);
+        }
+    }
+    for (const std::string& name : names_in(locks_folder())) {
+        // Of those who once took the writer's lock over; while it is held they are of no use.
+        if (name.starts_with("writer.")) remove_tree(locks_folder() / name);
+    }
+    remove_stale_leases();
+}
+
+void StoreDirectory::remove_stale_leases() const {
+    const fs::path leases = locks_folder() / "leases";
+    for (const std::string& name : names_in(leases)) {
+        if (!live_holder(leases / name)) remove_tree(leases / name);
+    }
+}
+
+uint64_t free_bytes(const fs::path& folder) {
+    fs::path existing = fs::absolute(folder);
+    while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
+    struct statvfs status {};
+    if (::statvfs(existing.c_str(), &status) != 0) {
+        throw StoreError(fmt::format("cannot tell the free space of {}: {}", shown(existing),
+                                     std::generic_category().message(errno)));
+    }
+    return static_cast<uint64_t>(status.f_bavail) * status.f_frsize;
+}
+
+}  // namespace kinetome
