@@ -27,7 +27,7 @@ Traits usual_traits() {
 
 double usual_cycle_seconds(Activity activity) {
     constexpr std::array<double, static_cast<size_t>(Activity::count)> seconds = {
-        1.10, 0.72, 1.60, 1.05, 1.10, 1.35, 1.35, 2.40, 1.20, 0.80, 5.50, 6.00};
+        1.15, 0.78, 1.75, 1.25, 1.30, 1.65, 1.65, 2.70, 1.45, 0.95, 6.50, 6.00};
     return seconds.at(static_cast<size_t>(activity));
 }
 

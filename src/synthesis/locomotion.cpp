@@ -14,6 +14,7 @@ struct Gait {
     double duty;         ///< share of the cycle a foot is on the floor
     double landing;      ///< where the middle of the stance is, ahead of the hips
     double width;        ///< between the feet
+    double follow;       ///< of the floor's speed, what a foot has as it leaves and as it lands
     const Curve& pitch;  ///< of the foot, from its landing on
     const Curve& lift;   ///< of the sole, from its landing on
 };
@@ -29,8 +30,8 @@ void place_foot(ValueTable<Leg>& leg, Side side, const Gait& gait, double phase,
         ahead = reach - gait.stride * at;
     } else {
         const double swing = 1 - gait.duty;
-        ahead = hermite((at - gait.duty) / swing, -reach, reach, -gait.stride * swing,
-                        -gait.stride * swing);
+        const double slope = -gait.follow * gait.stride * swing;
+        ahead = hermite((at - gait.duty) / swing, -reach, reach, slope, slope);
     }
     const double turned = traits[Trait::turn] * ahead / (gait.stride * rate);
     leg[Leg::ahead] = gait.landing + ahead;
@@ -38,7 +39,8 @@ void place_foot(ValueTable<Leg>& leg, Side side, const Gait& gait, double phase,
     leg[Leg::toe_out] = 6 * degree + sign_of(side) * turned;
     leg[Leg::lift] = gait.lift(at);
     leg[Leg::pitch] = gait.pitch(at);
-    leg[Leg::toe_bend] = 0.6 * std::max(0.0, leg[Leg::pitch]) * (at < gait.duty ? 1.0 : 0.4);
+    const double released = smooth_step((at - gait.duty) / 0.12);
+    leg[Leg::toe_bend] = (0.6 - 0.4 * released) * std::max(0.0, leg[Leg::pitch]);
     leg[Leg::knee_out] = 4 * degree;
 }
 
@@ -82,8 +84,13 @@ Posture walk(const Traits& traits, const Moment& moment) {
                                 {0.84, -4 * degree},  {0.95, -21 * degree}};
     static const Curve lift = {{0.00, 0}, {0.58, 0}, {0.70, 0.06}, {0.82, 0.035}, {0.96, 0.004}};
     const double stride = 1.28 * traits[Trait::size];
-    const Gait gait = {
-        .stride = stride, .duty = 0.62, .landing = 0, .width = 0.21, .pitch = pitch, .lift = lift};
+    const Gait gait = {.stride = stride,
+                       .duty = 0.62,
+                       .landing = 0,
+                       .width = 0.21,
+                       .follow = 1,
+                       .pitch = pitch,
+                       .lift = lift};
     using enum Trunk;
     Posture posture;
     const double phase = moment.phase;
@@ -114,12 +121,13 @@ Posture run(const Traits& traits, const Moment& moment) {
                                 {0.36, 58 * degree}, {0.52, 82 * degree}, {0.74, 25 * degree},
                                 {0.94, -8 * degree}};
     static const Curve lift = {{0.00, 0},    {0.32, 0},    {0.44, 0.16},
-                               {0.58, 0.36}, {0.74, 0.22}, {0.90, 0.045}};
-    const double stride = 1.90 * traits[Trait::size];
+                               {0.58, 0.33}, {0.74, 0.22}, {0.90, 0.045}};
+    const double stride = 1.80 * traits[Trait::size];
     const Gait gait = {.stride = stride,
                        .duty = 0.37,
-                       .landing = 0.03,
+                       .landing = 0.01,
                        .width = 0.15,
+                       .follow = 0.5,
                        .pitch = pitch,
                        .lift = lift};
     using enum Trunk;

@@ -2,12 +2,12 @@
 #include <vector>
 
 #include "kinetome/synthesis/take.h"
-#include "take_source.h"
+#include "take_maker.h"
 
 namespace kinetome {
 namespace {
 
-class ProceduralTakes : public TakeSource {
+class ProceduralTakes : public TakeMaker {
   public:
     explicit ProceduralTakes(const GenerateOptions& options)
         : seed_(options.seed),
@@ -38,7 +38,7 @@ class ProceduralTakes : public TakeSource {
 
 }  // namespace
 
-std::unique_ptr<TakeSource> procedural_takes(const GenerateOptions& options) {
+std::unique_ptr<TakeMaker> procedural_takes(const GenerateOptions& options) {
     return std::make_unique<ProceduralTakes>(options);
 }
 

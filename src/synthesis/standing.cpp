@@ -61,33 +61,33 @@ Posture idle(const Traits& traits, const Moment& moment) {
 }
 
 Posture arm_circles(const Traits& traits, const Moment& moment) {
-    // Large circles beside the body; the more curl, the smaller and the more sideways they are.
+    // Large circles beside the body, or small ones of arms held out sideways.
+    const bool large = traits[Trait::curl] < 0.5;
+    const double size = traits[Trait::size];
     Posture posture = standing(traits);
     using enum Trunk;
-    const double curl = traits[Trait::curl];
     for (const Side side : both_sides) {
         ValueTable<Arm>& arm = posture.arm(side);
         const double lag = side == Side::left ? traits[Trait::skew] : 0;
-        const double at = fraction(moment.phase - lag + 0.5) - 0.5;
+        // A whole turn is taken back in the middle of the cycle, where no blend can unwind it.
+        const double at = fraction(moment.phase + 0.5) - 0.5 - lag;
         const double c = std::cos(turn * at), s = std::sin(turn * at);
-        const double large = turn * at + 0.15 * std::sin(turn * at);
-        const double small = 45 * degree * s;
-        arm[Arm::flexion] = (1 - curl) * large + curl * small;
-        arm[Arm::abduction] = 18 * degree * traits[Trait::arm_size] +
-                              curl * (62 * degree - 30 * degree * c) - (1 - curl) * 6 * degree * c;
+        arm[Arm::flexion] = large ? turn * at + 0.15 * std::sin(turn * at) : 40 * degree * s * size;
+        arm[Arm::abduction] =
+            large ? (18 - 6 * c) * degree * traits[Trait::arm_size] : (72 - 30 * c * size) * degree;
         arm[Arm::inward] = 10 * degree * c;
         arm[Arm::elbow] =
-            14 * degree + std::max(-8 * degree, traits[Trait::elbow]) * 0.5 + 6 * degree * s;
+            14 * degree + 0.5 * std::max(-8 * degree, traits[Trait::elbow]) + 6 * degree * s;
         arm[Arm::pronation] = 20 * degree - 15 * degree * c;
         arm[Arm::shrug] = 8 * degree * (0.5 - 0.5 * c);
         arm[Arm::protraction] = 6 * degree * s;
     }
     const double c = std::cos(turn * moment.phase), s = std::sin(turn * moment.phase);
-    const double size = traits[Trait::trunk_size];
+    const double trunk = traits[Trait::trunk_size];
     posture[pelvis_height] += 0.008 * traits[Trait::bounce] * (c - 1);
-    posture[pelvis_advance] = -0.015 * size * s;
-    posture[spine_flexion] += 4 * degree * size * s;
-    posture[neck_flexion] -= 2 * degree * size * s;
+    posture[pelvis_advance] = -0.015 * trunk * s;
+    posture[spine_flexion] += 4 * degree * trunk * s;
+    posture[neck_flexion] -= 2 * degree * trunk * s;
     return posture;
 }
 

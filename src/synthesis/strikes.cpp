@@ -79,15 +79,15 @@ Posture punch(Side side, const Traits& traits, const Moment& moment) {
 }
 
 Posture kick(Side side, const Traits& traits, const Moment& moment) {
-    static const Curve ahead = {{0.00, -0.16}, {0.10, -0.14}, {0.27, 0.22},
-                                {0.42, 1.14},  {0.57, 0.26},  {0.84, -0.16}};
-    static const Curve lift = {{0.00, 0},    {0.07, 0.02}, {0.27, 0.42}, {0.42, 0.70},
-                               {0.57, 0.44}, {0.72, 0.10}, {0.84, 0}};
-    static const Curve pitch = {{0.00, 6 * degree},   {0.09, 42 * degree}, {0.26, 28 * degree},
-                                {0.42, -52 * degree}, {0.58, 24 * degree}, {0.74, 14 * degree},
-                                {0.86, 6 * degree}};
-    static const Curve weight = {{0.00, 0}, {0.13, 1}, {0.64, 1}, {0.86, 0}};
-    static const Curve thrust = {{0.00, 0}, {0.24, 0.1}, {0.42, 1}, {0.62, 0.1}};
+    static const Curve ahead = {{0.00, -0.16}, {0.09, -0.14}, {0.25, 0.22},
+                                {0.44, 1.12},  {0.62, 0.26},  {0.84, -0.16}};
+    static const Curve lift = {{0.00, 0},    {0.06, 0.02}, {0.25, 0.44}, {0.44, 0.74},
+                               {0.62, 0.42}, {0.74, 0.10}, {0.86, 0}};
+    static const Curve pitch = {{0.00, 6 * degree},   {0.08, 42 * degree}, {0.24, 28 * degree},
+                                {0.44, -50 * degree}, {0.62, 22 * degree}, {0.75, 14 * degree},
+                                {0.87, 6 * degree}};
+    static const Curve weight = {{0.00, 0}, {0.12, 1}, {0.66, 1}, {0.88, 0}};
+    static const Curve thrust = {{0.00, 0}, {0.22, 0.1}, {0.44, 1}, {0.66, 0.1}};
     using enum Trunk;
     const double sign = sign_of(side);
     const double phase = moment.phase;
@@ -192,7 +192,8 @@ Posture jump(const Traits& traits, const Moment& moment) {
     posture[neck_flexion] -= 55 * degree * crouch * trunk;
     posture[speed] = 1.4 * traits[Trait::curl] * in_air * in_air;
     posture[turn_rate] = traits[Trait::turn] * in_air * in_air;
-    const double arms = swing(moment.phase - traits[Trait::arm_lag]) * traits[Trait::arm_size];
+    const double arms =
+        swing(moment.phase - traits[Trait::arm_lag]) * std::min(1.25, traits[Trait::arm_size]);
     for (const Side side : both_sides) {
         ValueTable<Arm>& arm = posture.arm(side);
         arm[Arm::flexion] += 105 * degree * arms;

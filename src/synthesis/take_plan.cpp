@@ -16,7 +16,7 @@ constexpr double mean_excess = 978;  // over the shortest; with the cut at the l
 constexpr double subject_spread = 1.0;
 constexpr double take_spread = 0.5;
 constexpr double segment_spread = 0.6;
-constexpr double cycle_spread = 0.5;
+constexpr double cycle_spread = 0.7;
 
 /// How often an activity is chosen, and how many cycles of it at a time.
 struct Habit {
@@ -37,7 +37,7 @@ Habit habit_of(Activity activity) {
         {1.0, 3, 8},   // arm_circles
         {0.8, 4, 9},   // wave
         {1.0, 1, 2},   // sit
-        {1.2, 1, 1},   // idle
+        {2.0, 1, 2},   // idle
     }};
     return habits[static_cast<size_t>(activity)];
 }
@@ -58,7 +58,7 @@ Activity random_activity(RandomStream& random) {
 /// What one take is about: as in a recording session, a few activities that come again.
 std::vector<Activity> random_repertoire(RandomStream& random) {
     const double kind = random.uniform();
-    const size_t wanted = kind < 0.3 ? 1 : 2 + random.below(5);
+    const size_t wanted = kind < 0.25 ? 1 : 2 + random.below(5);
     std::vector<Activity> repertoire;
     while (repertoire.size() < wanted) {
         const Activity activity = random_activity(random);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double frame_seconds = 1 / synthesis_rate;
-constexpr double wandering_share = 0.7;  // of the spread between people
+constexpr double wandering_share = 1.0;  // of the spread between people
 
 /// Standard deviation of a joint's slow bending of its own: the trunk is a chain of many joints,
 /// the legs must keep the feet where they are.
@@ -22,6 +22,13 @@ double slow_bending(std::string_view joint) {
     for (const std::string_view part : {"lowerneck", "upperneck", "head"})
         if (joint == part) return 2.2 * degree;
     return 0.25 * degree;
+}
+
+/// Standard deviation of the capture's own noise: joints with few or close markers shake most.
+double shaking(std::string_view joint) {
+    for (const std::string_view part : {"wrist", "hand", "thumb", "toes", "fingers"})
+        if (joint.ends_with(part)) return 0.5 * degree;
+    return 0.18 * degree;
 }
 
 }  // namespace
@@ -57,8 +64,8 @@ JointNoise::JointNoise(const Skeleton& skeleton, RandomStream& random) {
             const bool turns = is_rotation(channel);
             const bool root = joint.parent < 0;
             const double slow = !turns || root ? 0 : slow_bending(joint.name);
-            const double fast = turns ? 0.12 * degree : 0.05;  // radians or cm
-            const double white = turns ? 0.02 * degree : 0.01;
+            const double fast = turns ? shaking(joint.name) : 0.05;  // radians or cm
+            const double white = 0.15 * fast;
             tracks_.push_back({Drift(slow, random.uniform(0.4, 1.2), random),
                                Drift(fast, random.uniform(0.05, 0.12), random), white});
         }

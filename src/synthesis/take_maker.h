@@ -19,9 +19,9 @@ struct NewTake {
     Annotations annotations;
 };
 
-class TakeSource {
+class TakeMaker {
   public:
-    virtual ~TakeSource() = default;
+    virtual ~TakeMaker() = default;
     virtual int64_t takes() const = 0;
     virtual int64_t subjects() const = 0;
     /// Thread-safe; the same take for the same index.
@@ -29,6 +29,6 @@ class TakeSource {
 };
 
 /// Takes planned and performed from nothing.
-std::unique_ptr<TakeSource> procedural_takes(const GenerateOptions& options);
+std::unique_ptr<TakeMaker> procedural_takes(const GenerateOptions& options);
 
 }  // namespace kinetome
