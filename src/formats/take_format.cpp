@@ -4,6 +4,7 @@
 #include <array>
 
 #include "kinetome/formats/asf_amc.h"
+#include "text_lines.h"
 
 namespace kinetome {
 namespace {
@@ -19,10 +20,6 @@ constexpr std::array formats = {
                .parse = parse_amc_take},
 };
 
-char lower_case(char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
 }  // namespace
 
 std::span<const TakeFormat> take_formats() {
@@ -30,10 +27,7 @@ std::span<const TakeFormat> take_formats() {
 }
 
 const TakeFormat* find_take_format(std::string_view extension) {
-    const auto same = [&](const TakeFormat& format) {
-        return std::ranges::equal(format.extension, extension, {}, {}, lower_case);
-    };
-    const auto found = std::ranges::find_if(formats, same);
+    const auto found = std::ranges::find(formats, lower_case(extension), &TakeFormat::extension);
     return found == formats.end() ? nullptr : &*found;
 }
 

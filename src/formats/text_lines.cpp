@@ -21,6 +21,14 @@ void split_words(std::string_view line, std::vector<std::string_view>& words) {
 
 }  // namespace
 
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& letter : lower) {
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    }
+    return lower;
+}
+
 bool TextLines::next() {
     if (again_) {
         again_ = false;

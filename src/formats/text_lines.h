@@ -15,6 +15,9 @@ constexpr bool is_blank(char character) {
     return character == ' ' || character == '\t' || character == '\r';
 }
 
+/// ASCII letters only.
+std::string lower_case(std::string_view text);
+
 /// Goes through a text line by line; a line's words end at blanks and at '#', which begins a
 /// comment. Lines without words are passed over.
 class TextLines {

@@ -130,6 +130,7 @@ TEST_CASE("an ASF that makes no sense is refused, naming the line and what was e
     check_refused(change("name thigh", "name 3thigh"), ":25", "begins with a letter");
     check_refused(change("           (-60.0 70.0)\n", ""), ":23", "found 2 for 3");
     check_refused(change("(-60.0 70.0)", "(-60.0)"), ":33", "limits in pairs");
+    check_refused(change("length 7", "length 1e308"), ":23", "a finite size of bone 'thigh'");
     check_refused(change("hip thigh", "hip knee"), ":62", "found 'knee'");
     check_refused(change("    hip thigh\n", ""), ":23", "bone 'thigh', found no parent");
     check_refused(change("hip thigh", "foot thigh"), ":23", "a cycle");

@@ -109,7 +109,7 @@ TEST_CASE("a joint's rotation is its parent's rotation times its local one") {
 }
 
 TEST_CASE("a BVH joint's first rotation acts last and its offset comes before it") {
-    Joint root{.name = "hips", .channels = {Channel::tx, Channel::rz, Channel::rx}, .limits = {}};
+    Joint root{.name = "hips", .channels = {Channel::tx, Channel::rz, Channel::rx}};
     root.first_rotation_acts_first = false;
     Joint knee = root;
     knee.name = "knee";
@@ -133,9 +133,9 @@ TEST_CASE("a frame of another skeleton is refused") {
 }
 
 TEST_CASE("a skeleton whose joints do not follow their parents is refused") {
-    const Joint root{.name = "root", .channels = {}, .limits = {}};
-    const Joint early{.name = "early", .parent = 2, .channels = {}, .limits = {}};
-    const Joint late{.name = "late", .parent = 0, .channels = {}, .limits = {}};
+    const Joint root{.name = "root"};
+    const Joint early{.name = "early", .parent = 2};
+    const Joint late{.name = "late", .parent = 0};
     CHECK_THROWS_AS(Skeleton("a", {root, early, late}), std::invalid_argument);
     CHECK_THROWS_AS(Skeleton("a", {root, late, late}), std::invalid_argument);
     CHECK_THROWS_AS(Skeleton("a", {late}), std::invalid_argument);

@@ -73,8 +73,8 @@ TEST_CASE("a frame that is not finite or not of the skeleton is not written") {
 }
 
 TEST_CASE("a rig that ASF cannot hold is refused, not bent") {
-    Joint hips{.name = "root", .channels = {Channel::rz}, .limits = {}};
-    Joint knee{.name = "knee", .parent = 0, .channels = {Channel::rx}, .limits = {}};
+    Joint hips{.name = "root", .channels = {Channel::rz}};
+    Joint knee{.name = "knee", .parent = 0, .channels = {Channel::rx}};
     CHECK_NOTHROW(write_asf(Skeleton("rig", {hips, knee})));
     knee.offset_before = {0, -40, 0};
     CHECK_THROWS_AS(write_asf(Skeleton("rig", {hips, knee})), std::invalid_argument);

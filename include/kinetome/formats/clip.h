@@ -13,9 +13,9 @@ namespace kinetome {
 
 struct Clip {
     std::shared_ptr<const Skeleton> skeleton;
-    MatrixF motion;                     ///< frames × dof_count; cm and radians
-    double rate = 120.0;                ///< frames a second
-    std::vector<std::string> warnings;  ///< what the reader found odd and how it went on
+    MatrixF motion;                          ///< frames × dof_count; cm and radians
+    double rate = 120.0;                     ///< frames a second
+    std::vector<std::string> warnings = {};  ///< what the reader found odd and how it went on
 
     int64_t frames() const { return motion.rows(); }
 };

@@ -63,11 +63,11 @@ struct Joint {
     Eigen::Vector3d offset_before = Eigen::Vector3d::Zero();  ///< cm
     Eigen::Vector3d offset_after = Eigen::Vector3d::Zero();   ///< cm
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();       ///< ASF `axis`; identity for BVH
-    std::vector<Channel> channels;  ///< columns of the joint, in the order of a clip's columns
+    std::vector<Channel> channels = {};  ///< columns of the joint, in the order of a clip's columns
     /// ASF: the first rotation listed acts first (rx ry rz: R = Rz·Ry·Rx). BVH: it acts last.
     bool first_rotation_acts_first = true;
     /// Allowed range of each channel (radians or cm); empty when the source states none.
-    std::vector<std::pair<double, double>> limits;
+    std::vector<std::pair<double, double>> limits = {};
 };
 
 /// What one unit of a source file is here. An AMC file is written in the units of its ASF file.
