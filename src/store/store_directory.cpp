@@ -47,7 +47,7 @@ void make_folder(const fs::path& path) {
 }
 
 /// False when there is nothing. Throws StoreError when that cannot be told.
-bool exists(const fs::path& path) {
+bool is_there(const fs::path& path) {
     std::error_code error;
     const bool found = fs::exists(path, error);
     if (error) {
@@ -106,11 +106,13 @@ void require_plain_name(const std::string& name) {
 
 StoreDirectory StoreDirectory::open(const fs::path& path) {
     const fs::path marker = path / marker_name;
-    if (!exists(marker)) {
+    if (!is_there(path)) {
         throw StoreError(fmt::format(
-            exists(path) ? "{0} is not a Kinetome store (it has no {1})"
-                         : "there is no store {0}; `kinetome reindex CORPUS --store {0}` makes one",
-            shown(path), marker_name));
+            "there is no store {0}; `kinetome reindex CORPUS --store {0}` makes one", shown(path)));
+    }
+    if (!is_there(marker)) {
+        throw StoreError(
+            fmt::format("{} is not a Kinetome store: it has no {}", shown(path), marker_name));
     }
     require_known_format(marker);
     return StoreDirectory(path);
@@ -118,7 +120,7 @@ StoreDirectory StoreDirectory::open(const fs::path& path) {
 
 StoreDirectory StoreDirectory::open_or_create(const fs::path& path) {
     make_folder(path);
-    if (!exists(path / marker_name)) mark_as_store(path);
+    if (!is_there(path / marker_name)) mark_as_store(path);
     StoreDirectory store = open(path);
     for (const fs::path& folder :
          {store.generations_folder(), store.scratch(), store.locks_folder() / "slices",
