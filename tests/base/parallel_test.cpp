@@ -135,6 +135,18 @@ TEST_CASE("a tree gives the same bits whatever the order of arrival") {
     }
 }
 
+TEST_CASE("siblings are merged left before right, whoever comes second") {
+    const auto join = [](std::string& left, const std::string& right) {
+        left = "(" + left + right + ")";
+    };
+    RandomStream random(1, "sides");
+    for (int repeat = 0; repeat < 50; ++repeat) {
+        FixedTree<std::string, decltype(join)> tree(7, join);
+        for (const size_t i : shuffled(7, random)) tree.insert_leaf(int64_t(i), {char('a' + i)});
+        CHECK(tree.take_root() == "(((ab)(cd))((ef)g))");
+    }
+}
+
 TEST_CASE("a tree has no sum before the last leaf is in, or without leaves") {
     DoubleTree tree(3, add);
     tree.insert_leaf(2, 1);
