@@ -115,14 +115,15 @@ int64_t resampled_frames(int64_t frames, double from_rate, double to_rate) {
     return rows;
 }
 
-Clip resample(const Clip& clip, double rate) {
-    check_rate(rate);
-    if (rate == clip.rate) return clip;
+Clip sample(const Clip& clip, std::span<const double> source_frames, double rate) {
     const Plan plan = plan_of(*clip.skeleton);
     Clip result{clip.skeleton, {}, rate, clip.warnings};
-    result.motion.resize(resampled_frames(clip.frames(), clip.rate, rate), clip.motion.cols());
+    result.motion.resize(static_cast<int64_t>(source_frames.size()), clip.motion.cols());
     for (int64_t row = 0; row < result.frames(); ++row) {
-        const double at = source_frame(row, clip.rate, rate);
+        const double at = source_frames[static_cast<size_t>(row)];
+        if (!(at >= 0 && at <= static_cast<double>(clip.frames() - 1))) {
+            throw std::invalid_argument("a clip can be sampled inside its frames only");
+        }
         const auto frame = static_cast<int64_t>(at);
         const double share = at - static_cast<double>(frame);
         if (share == 0) {
@@ -133,6 +134,17 @@ Clip resample(const Clip& clip, double rate) {
         }
     }
     return result;
+}
+
+Clip resample(const Clip& clip, double rate) {
+    check_rate(rate);
+    if (rate == clip.rate) return clip;
+    std::vector<double> moments(
+        static_cast<size_t>(resampled_frames(clip.frames(), clip.rate, rate)));
+    for (size_t row = 0; row < moments.size(); ++row) {
+        moments[row] = source_frame(static_cast<int64_t>(row), clip.rate, rate);
+    }
+    return sample(clip, moments, rate);
 }
 
 }  // namespace kinetome

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "kinetome/formats/clip.h"
 
@@ -15,6 +16,11 @@ namespace kinetome {
 /// shorter way round: a slerp would leave the turns that its channels can say. Throws
 /// std::invalid_argument unless the rate is positive and finite.
 Clip resample(const Clip& clip, double rate);
+
+/// The clip at any moments: row i is the clip at source_frames[i], between two frames as resample
+/// does it. `rate` is what the result states. Throws std::invalid_argument for a moment before the
+/// first or after the last frame.
+Clip sample(const Clip& clip, std::span<const double> source_frames, double rate);
 
 /// Rows that resample gives for `frames` frames.
 int64_t resampled_frames(int64_t frames, double from_rate, double to_rate);
