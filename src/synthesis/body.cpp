@@ -98,7 +98,7 @@ void add_arm(SkeletonBuilder& builder, const Body& body, int thorax, int side) {
                                   {ry}, {half_turn});
     const int hand = builder.add(prefix + "hand", wrist, out * body.hand, hand_axes, {rx, rz},
                                  {{-90, 90}, {-60, 60}});
-    builder.add(prefix + "fingers", hand, out * body.fingers, hand_axes, {rx}, {{-30, 100}});
+    builder.add(prefix + "fingers", hand, out * body.fingers, hand_axes, {rx}, {{-30, 120}});
     const Eigen::Vector3d thumb = Eigen::Vector3d(side, 0, 1).normalized();
     builder.add(prefix + "thumb", wrist, thumb * body.thumb, {-90, side * 45.0, 0}, {rx, rz},
                 {{-60, 60}, {-60, 60}});

@@ -104,8 +104,11 @@ Annotations write_takes(const TakeMaker& maker, const fs::path& folder, MotionFo
 GenerateSummary generate_corpus(const GenerateOptions& options, const fs::path& folder, int threads,
                                 const FramesDone& frames_done, const StopToken& stop) {
     if (options.frames < 1) throw UsageError("a corpus needs at least one frame: give --frames");
+    if (!options.from.empty() && options.subjects > 0)
+        throw UsageError("--subjects does not go with --from: its takes bring their performers");
     refuse_occupied(folder);
-    const std::unique_ptr<TakeMaker> maker = procedural_takes(options);
+    const std::unique_ptr<TakeMaker> maker =
+        options.from.empty() ? procedural_takes(options) : varied_takes(options);
 
     const fs::path incomplete = folder.string() + ".incomplete";
     std::error_code error;

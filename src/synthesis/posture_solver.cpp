@@ -26,6 +26,12 @@ double softly_limited(double distance, double leg) {
     return free + margin * (1 - std::exp((free - distance) / margin));
 }
 
+/// The angle, but never below zero: an elbow is stopped softly before it bends backwards.
+double softly_positive(double angle) {
+    constexpr double soft = 12 * std::numbers::pi / 180;
+    return angle >= soft ? angle : soft * std::exp((angle - soft) / soft);
+}
+
 double angle_opposite(double side, double a, double b) {
     return std::acos(std::clamp((a * a + b * b - side * side) / (2 * a * b), -1.0, 1.0));
 }
@@ -130,11 +136,11 @@ void PostureSolver::place_arm(Side side, const ValueTable<Arm>& arm, std::span<d
                                   axis_rotation(2, sign * arm[Arm::abduction]) *
                                   axis_rotation(1, sign * (std::numbers::pi - arm[Arm::inward]));
     turn_ball(joints.humerus, humerus_axes_[i] * frame, dofs);
-    value(joints.radius) = arm[Arm::elbow];
+    value(joints.radius) = softly_positive(arm[Arm::elbow]);
     value(joints.wrist) = -sign * arm[Arm::pronation];
     value(joints.hand) = arm[Arm::wrist_flexion];
     value(joints.hand, 1) = sign * arm[Arm::wrist_deviation];
-    value(joints.fingers) = arm[Arm::finger_flexion];
+    value(joints.fingers) = softly_positive(arm[Arm::finger_flexion]);
     value(joints.thumb) = arm[Arm::thumb_flexion];
     value(joints.thumb, 1) = sign * arm[Arm::thumb_spread];
 }

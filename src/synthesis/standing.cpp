@@ -75,7 +75,9 @@ Posture arm_circles(const Traits& traits, const Moment& moment) {
         arm[Arm::flexion] = large ? turn * at + 0.15 * std::sin(turn * at) : 40 * degree * s * size;
         arm[Arm::abduction] =
             large ? (18 - 6 * c) * degree * traits[Trait::arm_size] : (72 - 30 * c * size) * degree;
-        arm[Arm::inward] = 10 * degree * c;
+        // Flesh undoes what the circle twists: the upper arm turns once about itself, mostly while
+        // it is up, so that no cycle leaves the shoulder wound up.
+        arm[Arm::inward] = 10 * degree * c + (large ? turn * at - std::sin(turn * at) : 0);
         arm[Arm::elbow] =
             14 * degree + 0.5 * std::max(-8 * degree, traits[Trait::elbow]) + 6 * degree * s;
         arm[Arm::pronation] = 20 * degree - 15 * degree * c;

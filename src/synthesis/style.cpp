@@ -145,6 +145,8 @@ void choose_form(Activity activity, Traits& traits, RandomStream& random) {
         case Activity::jump:
             traits[curl] = kind < 0.5 ? 0 : amount;
             traits[turn] = kind < 0.75 ? 0 : 160 * degree * signed_amount;
+            // Gravity sets the time in the air: a slow jump would be a high one.
+            traits[tempo] = std::clamp(traits[tempo], 0.92, 1.2);
             break;
         case Activity::punch_left:
         case Activity::punch_right:
@@ -152,7 +154,7 @@ void choose_form(Activity activity, Traits& traits, RandomStream& random) {
             break;
         case Activity::arm_circles:
             traits[curl] = kind < 0.6 ? 0.15 * amount : 0.75 + 0.25 * amount;
-            traits[skew] = signed_amount < 0.5 ? 0 : 0.5;
+            traits[skew] = signed_amount < 0.5 ? 0 : 0.3;
             break;
         case Activity::idle:
             traits[curl] = kind < 0.5 ? 0 : amount;

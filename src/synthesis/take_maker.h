@@ -31,4 +31,8 @@ class TakeMaker {
 /// Takes planned and performed from nothing.
 std::unique_ptr<TakeMaker> procedural_takes(const GenerateOptions& options);
 
+/// Takes of the corpus options.from, each time as other performers: time-warped, rescaled, half of
+/// them mirrored; rows of its truth.csv and cycles.csv go along. Throws InputError.
+std::unique_ptr<TakeMaker> varied_takes(const GenerateOptions& options);
+
 }  // namespace kinetome
