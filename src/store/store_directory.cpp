@@ -201,11 +201,15 @@ StoreLock StoreDirectory::lease(const std::string& generation) const {
     } catch (const CreateError&) {
         // Then nobody is told of this reader; should its files go, it fails and can be run again.
     }
-    if (!fs::is_directory(generation_folder(generation))) {
+    if (live_holder(removal_lock(generation)) || !is_there(generation_folder(generation))) {
         throw StoreError(fmt::format("generation {} of {} is gone: run the command again",
                                      generation, shown(path_)));
     }
     return lease;
+}
+
+fs::path StoreDirectory::removal_lock(const std::string& generation) const {
+    return locks_folder() / ("removal." + generation);
 }
 
 bool StoreDirectory::leased(const std::string& generation) const {
@@ -224,13 +228,12 @@ std::vector<std::string> StoreDirectory::remove_old(int keep) {
     const auto kept = current();
     for (const std::string& id : old) {
         if (id == kept) continue;
-        // A reader takes its lease before it looks for the folder; here the order is the reverse.
-        const fs::path folder = generation_folder(id), away = generations_folder() / (".old-" + id);
-        rename_folder(folder, away);
-        if (leased(id)) {
-            rename_folder(away, folder);
-            continue;
-        }
+        // Leases are looked at after the intent is there, as readers do the reverse: at least one
+        // of both sees the other.
+        const StoreLock intent = StoreLock::take(removal_lock(id));
+        if (leased(id)) continue;
+        const fs::path away = generations_folder() / (".old-" + id);
+        rename_folder(generation_folder(id), away);
         remove_tree(away);
         removed.push_back(id);
     }
@@ -246,8 +249,9 @@ void StoreDirectory::remove_leftovers() const {
         }
     }
     for (const std::string& name : names_in(locks_folder())) {
-        // Of those who once took the writer's lock over; while it is held they are of no use.
-        if (name.starts_with("writer.")) remove_tree(locks_folder() / name);
+        // Of writers that were killed while they took the lock over or removed a generation.
+        if (name.starts_with("writer.") || name.starts_with("removal."))
+            remove_tree(locks_folder() / name);
     }
     remove_stale_leases();
 }

@@ -5,7 +5,7 @@
 //   STORE/current                symbolic link to the current generation, switched last
 //   STORE/generations/<id>/      files shared with other generations by hard links
 //   STORE/scratch/               work in progress
-//   STORE/locks/                 writer, slices/<name>, leases/<generation>.<nonce>
+//   STORE/locks/                 writer, slices/<name>, leases/<generation>.<nonce>, removal.<id>
 //   STORE/labels.csv             the user's own; never touched here
 #pragma once
 
@@ -52,7 +52,8 @@ class StoreDirectory {
     bool leased(const std::string& generation) const;
 
     /// One file of a new generation. It is linked from `source` (copied when links are refused), so
-    /// that a kill before the end of publishing loses nothing there.
+    /// that a kill before the end of publishing loses nothing there. Replace it, never write to it,
+    /// afterwards.
     struct File {
         std::string name;
         std::filesystem::path source;
@@ -72,6 +73,8 @@ class StoreDirectory {
 
     std::filesystem::path generations_folder() const { return path_ / "generations"; }
     std::filesystem::path locks_folder() const { return path_ / "locks"; }
+    /// Held while a generation is being removed.
+    std::filesystem::path removal_lock(const std::string& generation) const;
     std::string next_generation_id(const std::vector<File>& files,
                                    const std::map<std::string, std::string>& texts) const;
     void switch_current(const std::string& id) const;
