@@ -5,13 +5,15 @@ target_compile_options(kinetome_options INTERFACE
   -march=${KINETOME_ARCH} -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
   $<$<BOOL:${KINETOME_WERROR}>:-Werror>
   # GCC 12 finds overlaps in joined std::strings where there are none (GCC bug 105651).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-target_compile_definitions(kinetome_options INTERFACE KINETOME_ARCH="${KINETOME_ARCH}")
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # ... and unset values in its own AVX-512 headers, in std::optional and under sanitizers.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+# Eigen must not start threads of its own: the thread count is given once, and bits depend on none.
+target_compile_definitions(kinetome_options INTERFACE
+  KINETOME_ARCH="${KINETOME_ARCH}" EIGEN_DONT_PARALLELIZE)
 if(KINETOME_SANITIZE)
   target_compile_options(kinetome_options INTERFACE
-    -fsanitize=${KINETOME_SANITIZE} -fno-omit-frame-pointer
-    # The sanitizers' own instructions confuse GCC's analysis (GCC manual, -fsanitize).
-    -Wno-maybe-uninitialized)
+    -fsanitize=${KINETOME_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(kinetome_options INTERFACE -fsanitize=${KINETOME_SANITIZE})
 endif()
 

@@ -120,6 +120,7 @@ void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& pas
         passenger.outcome.rate = stored.clip.rate;
         passenger.outcome.clip_class = stored.clip.skeleton->class_name();
         passenger.outcome.capabilities = capabilities_of(*stored.clip.skeleton);
+        passenger.outcome.warnings = stored.clip.warnings;
         passenger.clip = std::move(stored);
     } catch (const InputError& error) {
         passenger.outcome.quarantined = error.what();
