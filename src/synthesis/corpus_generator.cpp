@@ -28,6 +28,12 @@ void make_folder(const fs::path& folder) {
     if (error) throw create_error("create", folder, error.value());
 }
 
+/// "takes/" and "takes" are one folder, but differ in what stands beside them.
+fs::path without_final_slash(const fs::path& folder) {
+    const fs::path whole = fs::absolute(folder).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
 void refuse_occupied(const fs::path& folder) {
     std::error_code error;
     if (!fs::exists(folder, error)) return;
@@ -101,8 +107,9 @@ Annotations write_takes(const TakeMaker& maker, const fs::path& folder, MotionFo
 
 }  // namespace
 
-GenerateSummary generate_corpus(const GenerateOptions& options, const fs::path& folder, int threads,
+GenerateSummary generate_corpus(const GenerateOptions& options, const fs::path& output, int threads,
                                 const FramesDone& frames_done, const StopToken& stop) {
+    const fs::path folder = without_final_slash(output);
     if (options.frames < 1) throw UsageError("a corpus needs at least one frame: give --frames");
     if (!options.from.empty() && options.subjects > 0)
         throw UsageError("--subjects does not go with --from: its takes bring their performers");

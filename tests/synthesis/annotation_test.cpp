@@ -1,0 +1,35 @@
+#include "kinetome/synthesis/annotation.h"
+
+#include <catch2/catch.hpp>
+
+#include "kinetome/base/error.h"
+
+using namespace kinetome;
+
+TEST_CASE("annotations come back from their files") {
+    const std::vector<TruthRow> truth = {{"02_01", 0, 343, "walk", 300, 343},
+                                         {"=cmd", 3, 9, "sword, play", 8, 10}};
+    const std::vector<TruthRow> read = parse_truth_csv(write_truth_csv(truth), "truth.csv");
+    REQUIRE(read.size() == 2);
+    for (size_t i = 0; i < 2; ++i) {
+        CHECK(read[i].clip == truth[i].clip);
+        CHECK(read[i].first == truth[i].first);
+        CHECK(read[i].end == truth[i].end);
+        CHECK(read[i].label == truth[i].label);
+        CHECK(read[i].end_lo == truth[i].end_lo);
+        CHECK(read[i].end_hi == truth[i].end_hi);
+    }
+    CHECK(write_truth_csv({}) == "clip,first,end,label,end_lo,end_hi\n");
+    CHECK(write_cycles_csv({{"a", 1, 2, "b"}}) == "clip,first,end,label\na,1,2,b\n");
+    CHECK(parse_cycles_csv("clip,first,end,label\na,1,2,b\n", "c.csv").front().label == "b");
+}
+
+TEST_CASE("annotations of another shape are refused, naming the line") {
+    using Catch::Matchers::Contains;
+    CHECK_THROWS_WITH(parse_truth_csv("", "t.csv"), Contains("t.csv:1: "));
+    CHECK_THROWS_WITH(parse_truth_csv("clip,first,end,label\n", "t.csv"), Contains("t.csv:1: "));
+    const std::string header = "clip,first,end,label\n";
+    CHECK_THROWS_WITH(parse_cycles_csv(header + "a,1,2\n", "c.csv"), Contains("c.csv:2: "));
+    CHECK_THROWS_WITH(parse_cycles_csv(header + "a,1,x,b\n", "c.csv"), Contains("'x'"));
+    CHECK_THROWS_WITH(parse_cycles_csv(header + "a,-1,2,b\n", "c.csv"), Contains("'-1'"));
+}
