@@ -64,7 +64,7 @@ void FeatureShardWriter::begin_class(const std::string& name, const FeatureClass
     const auto markers = static_cast<int64_t>(shared.marker_names.size());
     rows("pose_vectors", ElementType::float32, {columns}, "see pose_vector_columns/unit",
          "frames without place and heading", "S1 §3.2", "facing frame");
-    rows("markers", ElementType::float32, {markers, 3}, "cm", "joint positions as markers", "S2 §2",
+    rows("markers", ElementType::float32, {markers, 3}, "cm", "joint positions as markers", "S2 §3",
          "root at the origin, hip axis along x, Y up");
     rows("effectors", ElementType::float32, {5, 3}, "cm",
          "head, left wrist, right wrist, left ankle, right ankle", "S3 §3", "root joint");

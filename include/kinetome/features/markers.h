@@ -1,4 +1,4 @@
-// Marker sets (S2 §2): joint positions as virtual markers, place and heading removed.
+// Marker sets (S2 §3): joint positions as virtual markers, place and heading removed.
 #pragma once
 
 #include <string>
