@@ -1,5 +1,6 @@
 #include "kinetome/synthesis/corpus_generator.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -89,6 +90,8 @@ void write_take(const NewTake& take, const fs::path& folder, MotionFormat format
 Annotations write_takes(const TakeMaker& maker, const fs::path& folder, MotionFormat format,
                         int threads, const FramesDone& frames_done, const StopToken& stop) {
     std::vector<Annotations> annotations(static_cast<size_t>(maker.takes()));
+    const tbb::global_control granted(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute([&] {
         const auto one = [&](int64_t index) {

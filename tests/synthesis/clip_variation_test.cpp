@@ -4,10 +4,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "kinetome/formats/asf_amc.h"
 #include "kinetome/formats/kinematics.h"
 #include "kinetome/formats/resample.h"
 #include "kinetome/formats/write_amc.h"
-#include "kinetome/formats/asf_amc.h"
 #include "kinetome/synthesis/take.h"
 #include "support/cmu_take.h"
 #include "support/test_corpus.h"

@@ -27,7 +27,8 @@ TEST_CASE("a drift has the spread it was asked for and moves smoothly") {
     double greatest_step = 0;
     for (int i = 0; i < 400'000; ++i) {
         const double value = drift.next(1.0 / 120, random);
-        if (!values.empty()) greatest_step = std::max(greatest_step, std::abs(value - values.back()));
+        if (!values.empty())
+            greatest_step = std::max(greatest_step, std::abs(value - values.back()));
         values.push_back(value);
     }
     CHECK(spread_of(values) == Approx(2.0).epsilon(0.05));

@@ -83,8 +83,8 @@ TEST_CASE("cycles lie inside a segment of their label and follow each other") {
             last_end = cycle.end;
             int inside = 0;
             for (const TruthRow& row : rows.truth)
-                inside += row.first <= cycle.first && cycle.end <= row.end &&
-                          row.label == cycle.label;
+                inside +=
+                    row.first <= cycle.first && cycle.end <= row.end && row.label == cycle.label;
             CHECK(inside == 1);
             ++cycles;
         }

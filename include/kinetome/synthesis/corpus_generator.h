@@ -18,7 +18,7 @@ struct GenerateOptions {
     uint64_t seed = 1;                        ///< same seed, same bytes
     MotionFormat format = MotionFormat::amc;  ///< of the takes
     int64_t subjects = 0;                     ///< performers; 0: one for about 12 takes
-    std::filesystem::path from;               ///< vary the takes of this corpus; empty: procedural
+    std::filesystem::path from{};             ///< vary the takes of this corpus; empty: procedural
 };
 
 struct GenerateSummary {
