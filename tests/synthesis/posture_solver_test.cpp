@@ -85,6 +85,33 @@ TEST_CASE("knees bend forwards and elbows bring the hands to the front") {
     CHECK(stage.at("lhumerus").y() < stage.at("lclavicle").y() - 20);
 }
 
+TEST_CASE("an elbow asked to bend backwards is straight") {
+    Stage stage;
+    Posture posture = standing();
+    const auto column =
+        static_cast<size_t>(stage.skeleton.first_dof(*stage.skeleton.find("lradius")));
+    for (const double asked : {-40.0, -10.0, 0.0, 5.0}) {
+        posture.arm(Side::left)[Arm::elbow] = asked * degree;
+        stage.solve(posture);
+        CHECK(stage.dofs[column] >= 0);
+        CHECK(stage.dofs[column] < 12 * degree);
+    }
+}
+
+TEST_CASE("a body that turns round and round has angles that go on, without a jump") {
+    Stage stage;
+    const Posture posture = standing();
+    TravelFrame travel;
+    double last = 0;
+    for (int step = 0; step < 500; ++step) {
+        travel.heading = step * 2 * degree;
+        stage.solve(posture, travel);
+        CHECK(std::abs(stage.dofs[4] - last) < 3 * degree);
+        last = stage.dofs[4];
+    }
+    CHECK(last == Approx(998 * degree));
+}
+
 TEST_CASE("an arm that flexes comes up in front, one that abducts at its own side") {
     Stage stage;
     Posture posture = standing();

@@ -92,6 +92,21 @@ TEST_CASE("cycles lie inside a segment of their label and follow each other") {
     CHECK(cycles > 500);
 }
 
+TEST_CASE("a left-handed performer's segments are labelled by what is seen") {
+    SegmentPlan segment;
+    for (const auto& [done, seen] : {std::pair(Activity::punch_left, Activity::punch_right),
+                                     std::pair(Activity::punch_right, Activity::punch_left),
+                                     std::pair(Activity::kick_left, Activity::kick_right),
+                                     std::pair(Activity::kick_right, Activity::kick_left),
+                                     std::pair(Activity::walk, Activity::walk)}) {
+        segment.activity = done;
+        segment.mirrored = false;
+        CHECK(segment.label() == done);
+        segment.mirrored = true;
+        CHECK(segment.label() == seen);
+    }
+}
+
 TEST_CASE("every activity is performed, with either hand and foot") {
     std::set<std::string> labels;
     for (int64_t index = 0; index < 200; ++index) {
