@@ -1,5 +1,4 @@
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +9,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <system_error>
 
 #include "h5_library.h"
 #include "kinetome/store/artifact.h"
@@ -99,7 +99,10 @@ std::vector<std::string> split_at_zeros(const std::string& text) {
 std::vector<std::string> unreadable_datasets(const fs::path& path) {
     // Damage could make HDF5 turn in circles. Any sound file is read at this pace.
     constexpr uint64_t bytes_a_second = 10'000'000;
-    const rlim_t seconds = 60 + fs::file_size(path) / bytes_a_second;
+    std::error_code error;
+    const uint64_t bytes = fs::file_size(path, error);
+    if (error) throw StoreError("cannot open " + path.string() + ": " + error.message());
+    const rlim_t seconds = 60 + bytes / bytes_a_second;
     const auto names = result_of_child(seconds, [&] {
         std::string all;
         for (const std::string& name : h5::InputFile(path).datasets()) all += name + '\0';

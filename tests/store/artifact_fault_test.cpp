@@ -218,4 +218,5 @@ TEST_CASE("no damage to a file's structure harms the process that looks for it")
     }
     folder.write("a.h5", whole.substr(0, whole.size() / 2));
     CHECK_NOTHROW(unreadable_datasets(path));
+    CHECK_THROWS_AS(unreadable_datasets(folder / "none.h5"), StoreError);
 }

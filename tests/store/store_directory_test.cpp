@@ -251,6 +251,18 @@ TEST_CASE("a reader may have several leases, and a generation that is gone has n
     CHECK(names_in(folder / "locks" / "leases").empty());
 }
 
+TEST_CASE("a generation whose removal has begun cannot be leased") {
+    const TemporaryFolder folder;
+    StoreDirectory store = StoreDirectory::open_or_create(folder.path());
+    const std::string id = publish(store, "a");
+    const fs::path removal = folder / "locks" / ("removal." + id);
+    Holder remover([&] { return StoreLock::take(removal); });
+    CHECK_THROWS_AS(store.lease(id), StoreError);
+    CHECK_FALSE(store.leased(id));
+    remover.kill();
+    CHECK(store.lease(id).held());
+}
+
 TEST_CASE("a store that one may only read is read without a lease, and not written to") {
     const TemporaryFolder folder;
     std::string id;
