@@ -1,0 +1,79 @@
+// A store as anybody finds it on disk.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "program.h"
+#include "texts.h"
+
+class StoreOnDisk {
+  public:
+    explicit StoreOnDisk(fs::path path) : path_(std::move(path)) {}
+
+    const fs::path& path() const { return path_; }
+    std::string name() const { return path_.string(); }
+    fs::path run_folder() const { return path_ / "scratch" / "run"; }
+
+    /// Id that `current` names; nothing when there is no such link.
+    std::optional<std::string> current() const {
+        if (!fs::is_symlink(path_ / "current")) return std::nullopt;
+        return fs::read_symlink(path_ / "current").filename().string();
+    }
+    fs::path file(const std::string& name) const { return path_ / "current" / name; }
+
+    std::set<std::string> generations() const {
+        std::set<std::string> names;
+        if (!fs::exists(path_ / "generations")) return names;
+        for (const auto& entry : fs::directory_iterator(path_ / "generations")) {
+            names.insert(entry.path().filename().string());
+        }
+        return names;
+    }
+
+    /// Artifacts of the current generation.
+    std::set<std::string> artifacts(const std::string& beginning = "") const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::directory_iterator(path_ / "current/")) {
+            const std::string file_name = entry.path().filename().string();
+            if (entry.path().extension() == ".h5" && file_name.rfind(beginning, 0) == 0) {
+                names.insert(file_name);
+            }
+        }
+        return names;
+    }
+
+    /// Bytes of every artifact, by name.
+    std::map<std::string, std::string> artifact_bytes() const {
+        std::map<std::string, std::string> bytes;
+        for (const std::string& one : artifacts()) bytes[one] = text_of(file(one));
+        return bytes;
+    }
+
+    /// Identity on the file system of every artifact, by name.
+    std::map<std::string, ino_t> artifact_inodes() const {
+        std::map<std::string, ino_t> inodes;
+        for (const std::string& one : artifacts()) {
+            struct stat status {};
+            if (::stat(file(one).c_str(), &status) != 0)
+                throw std::runtime_error("cannot stat " + one);
+            inodes[one] = status.st_ino;
+        }
+        return inodes;
+    }
+
+    /// What `verify --digest` prints: one line a dataset. Requires that the store is whole.
+    std::string digests() const {
+        const CommandResult result = require_kinetome({"verify", name(), "--digest"});
+        REQUIRE(!result.output.empty());
+        return result.output;
+    }
+
+  private:
+    fs::path path_;
+};
