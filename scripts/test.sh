@@ -9,7 +9,7 @@ scripts/setup.sh
 scripts/format.sh --check
 scripts/build.sh release
 ctest --preset release -j "$(nproc)"
-for sanitizer in asan tsan; do
-  scripts/build.sh "$sanitizer" unit_tests
-  ctest --preset "$sanitizer" -j "$(nproc)"
-done
+scripts/build.sh asan sanitized_tests
+ctest --preset asan -j "$(nproc)"
+scripts/build.sh tsan threaded_tests
+ctest --preset tsan -j "$(nproc)"
