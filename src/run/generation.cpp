@@ -9,7 +9,12 @@ Generation::Generation(const StoreDirectory& store, const std::string& id, Verif
     : id_(id), folder_(store.generation_folder(id)), verified_(&verified), lease_(store.lease(id)) {
     const auto ledger_path = folder_ / "ledger.json", catalog_path = folder_ / "catalog.json";
     ledger_ = parse_ledger(read_file(ledger_path), ledger_path);
-    catalog_ = parse_catalog(read_file(catalog_path), catalog_path);
+    const std::string catalog = read_file(catalog_path);
+    const auto written = ledger_.texts.find("catalog.json");
+    if (written == ledger_.texts.end() || written->second != digest_of(catalog)) {
+        throw StoreError(catalog_path.string() + ": damaged: its bytes do not match the ledger");
+    }
+    catalog_ = parse_catalog(catalog, catalog_path);
 }
 
 ArtifactReader Generation::open(const std::string& file_name) const {

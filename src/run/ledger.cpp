@@ -70,10 +70,14 @@ Receipt receipt_from(const Json& json) {
     return receipt;
 }
 
+std::string text_of(const Json& json) {
+    return dump_json(json, 1) + "\n";
+}
+
 }  // namespace
 
 std::string write_receipt(const Receipt& receipt) {
-    return dump_json(to_json(receipt), 1) + "\n";
+    return text_of(to_json(receipt));
 }
 
 Receipt parse_receipt(std::string_view json, const std::filesystem::path& path) {
@@ -98,21 +102,27 @@ std::vector<const Receipt*> Ledger::of_stage(std::string_view stage) const {
 std::string write_ledger(const Ledger& ledger) {
     Json receipts = Json::array();
     for (const Receipt& receipt : ledger.receipts) receipts.push_back(to_json(receipt));
-    const Json body = {{"version", ledger.version}, {"receipts", receipts}};
+    Json texts = Json::object();
+    for (const auto& [name, hash] : ledger.texts) texts[name] = hash.hex();
+    const Json body = {{"version", ledger.version}, {"receipts", receipts}, {"texts", texts}};
     const std::string hash = digest_of(dump_json(body, -1)).hex();
-    return dump_json({{"hash", hash}, {"ledger", body}}, 1) + "\n";
+    return text_of({{"hash", hash}, {"ledger", body}});
 }
 
 Ledger parse_ledger(std::string_view json, const std::filesystem::path& path) {
     const auto ledger_from = [&](const Json& whole) {
         const Json& body = whole.at("ledger");
-        if (whole.at("hash") != digest_of(dump_json(body, -1)).hex()) {
+        // The text counts too: 1e-5 and 1E-5 are one number, but only one of them was written.
+        if (whole.at("hash") != digest_of(dump_json(body, -1)).hex() || json != text_of(whole)) {
             throw StoreError(path.string() + ": the ledger does not match its own hash: damaged");
         }
         Ledger ledger;
         ledger.version = body.at("version");
         for (const Json& receipt : body.at("receipts")) {
             ledger.receipts.push_back(receipt_from(receipt));
+        }
+        for (const auto& [name, hash] : body.at("texts").items()) {
+            ledger.texts[name] = Digest::from_hex(hash.get<std::string>());
         }
         return ledger;
     };

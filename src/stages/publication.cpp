@@ -184,13 +184,14 @@ Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
         log.info("generation {} is up to date: nothing to publish", publication.generation);
         return publication;
     }
+    std::map<std::string, std::string> texts = {
+        {"catalog.json", write_catalog(publication.catalog)},
+        {"config.toml", configuration},
+        {"log.txt", file_text(log_file)}};
+    for (const auto& [name, text] : texts) publication.ledger.texts[name] = digest_of(text);
+    texts["ledger.json"] = write_ledger(publication.ledger);
     StoreDirectory store = workspace.store();
-    publication.generation = store.publish(files,
-                                           {{"catalog.json", write_catalog(publication.catalog)},
-                                            {"ledger.json", write_ledger(publication.ledger)},
-                                            {"config.toml", configuration},
-                                            {"log.txt", file_text(log_file)}},
-                                           copy);
+    publication.generation = store.publish(files, texts, copy);
     log.info(
         "published generation {}: {} clips indexed ({} new, {} changed, {} reused), "
         "{} quarantined, {} removed",

@@ -106,7 +106,13 @@ std::vector<std::string> verify_generation(const StoreDirectory& store, const st
     findings.note([&] {
         VerifiedFiles verified;
         const Generation generation(store, id, verified);
-        std::set<std::string> known = {"catalog.json", "ledger.json", "config.toml", "log.txt"};
+        std::set<std::string> known = {"ledger.json"};
+        for (const auto& [name, hash] : generation.ledger().texts) {
+            findings.note([&, &path = name, &expected = hash] {
+                require_hash(generation.folder() / path, expected);
+            });
+            known.insert(name);
+        }
         for (const Receipt& receipt : generation.ledger().receipts) {
             check_file(generation.folder() / receipt.file.file_name, receipt, findings);
             known.insert(receipt.file.file_name);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +19,8 @@ struct ClipOutcome {
     std::string clip{};
     std::string quarantined{};  ///< reason; "" when it went through
     std::string skipped{};      ///< reason this stage left it out; "" when it did not
-    int64_t frames = 0;       ///< at the source's rate
-    double rate = 0;          ///< frames a second
+    int64_t frames = 0;         ///< at the source's rate
+    double rate = 0;            ///< frames a second
     std::string clip_class{};
     std::vector<std::string> capabilities{};
     std::vector<std::string> warnings{};
@@ -47,8 +48,9 @@ std::string write_receipt(const Receipt& receipt);
 Receipt parse_receipt(std::string_view json, const std::filesystem::path& path);
 
 struct Ledger {
-    std::string version;            ///< of the program
-    std::vector<Receipt> receipts;  ///< stages in table order, shards in clip order
+    std::string version;                    ///< of the program
+    std::vector<Receipt> receipts;          ///< stages in table order, shards in clip order
+    std::map<std::string, Digest> texts{};  ///< hash of each further file of the generation
 
     /// Nothing when the stage did not make that file.
     const Receipt* find(std::string_view file_name) const;
@@ -57,7 +59,7 @@ struct Ledger {
 
 /// JSON that carries its own hash.
 std::string write_ledger(const Ledger& ledger);
-/// Throws StoreError naming `path` when the text does not match the hash it carries.
+/// Throws StoreError naming `path` unless every byte is as written.
 Ledger parse_ledger(std::string_view json, const std::filesystem::path& path);
 
 }  // namespace kinetome
