@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/stages/export.h"
@@ -12,6 +15,13 @@ struct ExportFlags {
     std::filesystem::path store, output;
     std::string what, format = "csv", generation = "current";
 };
+
+/// A reader that has seen enough (`| head`) is no error.
+void print_whole(const std::string& text) {
+    const bool written =
+        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!written && errno != EPIPE) throw StoreError("standard output: cannot write");
+}
 
 }  // namespace
 
@@ -34,9 +44,8 @@ Command export_command() {
                         write_table(export_table(open.generation, flags->what), format);
                     if (!flags->output.empty()) {
                         write_file_atomically(flags->output, text);
-                    } else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
-                               std::fflush(stdout) != 0) {
-                        throw StoreError("standard output: cannot write");
+                    } else {
+                        print_whole(text);
                     }
                     return ExitCode::success;
                 };

@@ -76,19 +76,22 @@ struct GenerationFlags {
 }  // namespace
 
 Command info_command() {
-    return {
-        "info", "tell what a store holds", "kinetome info motion.store", [](CLI::App& app) -> Run {
-            auto flags = std::make_shared<GenerationFlags>();
-            flags->add_to(app);
-            return [=](const Invocation&) {
-                const OpenStore open(flags->store, flags->generation);
-                const auto ids = open.store.generations();
-                fmt::print("generation  {} ({} in the store)\n", open.generation.id(), ids.size());
-                print_clips(open.generation.catalog());
-                print_stages(open.generation.ledger());
-                return ExitCode::success;
-            };
-        }};
+    return {"info", "tell what a store holds", "kinetome info motion.store",
+            [](CLI::App& app) -> Run {
+                auto flags = std::make_shared<GenerationFlags>();
+                flags->add_to(app);
+                return [=](const Invocation&) {
+                    const OpenStore open(flags->store, flags->generation);
+                    const auto ids = open.store.generations();
+                    fmt::print("generation  {}\n", open.generation.id());
+                    for (const std::string& id : ids) {
+                        if (id != open.generation.id()) fmt::print("also there  {}\n", id);
+                    }
+                    print_clips(open.generation.catalog());
+                    print_stages(open.generation.ledger());
+                    return ExitCode::success;
+                };
+            }};
 }
 
 Command verify_command() {

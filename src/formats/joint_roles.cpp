@@ -34,9 +34,10 @@ constexpr std::array naming_schemes = {
 };
 
 /// What the features cannot do without (S3 §3).
-constexpr std::array needed_roles = {JointRole::root,       JointRole::head,
-                                     JointRole::left_wrist, JointRole::right_wrist,
-                                     JointRole::left_ankle, JointRole::right_ankle};
+// Effector features need head, wrists and ankles (S3 §3), marker sets the hips (S2 §3).
+constexpr std::array needed_roles = {
+    JointRole::root,       JointRole::head,        JointRole::left_wrist, JointRole::right_wrist,
+    JointRole::left_ankle, JointRole::right_ankle, JointRole::left_hip,   JointRole::right_hip};
 
 std::optional<JointRole> find_role(std::string_view name) {
     for (size_t i = 0; i < role_names.size(); ++i) {

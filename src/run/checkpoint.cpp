@@ -17,7 +17,7 @@ constexpr size_t hash_digits = 32;
 
 void CheckpointWriter::save(const fs::path& path) const {
     fs::path temporary = path;
-    temporary += ".tmp-checkpoint";
+    temporary += ".writing-checkpoint";
     std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
     file << digest_of(bytes_).hex() << bytes_;
     file.close();

@@ -78,7 +78,8 @@ FinishedWork Workspace::commit(Receipt receipt) const {
 
 void Workspace::remove_leftovers() const {
     for (const auto& entry : fs::directory_iterator(folder_)) {
-        if (entry.path().filename().string().find(".tmp-") == std::string::npos) continue;
+        const std::string name = entry.path().filename().string();
+        if (name.find(".writing-") == std::string::npos) continue;
         std::error_code ignored;  // a leftover that stays costs space only
         fs::remove(entry.path(), ignored);
     }

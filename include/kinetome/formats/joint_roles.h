@@ -19,8 +19,8 @@ JointMap load_joint_map(const std::filesystem::path& path);
 
 /// Gives the skeleton's joints their roles: those of `map` first, the rest from the known scheme
 /// that names most of them. Throws InputError, listing the joints found and the roles missing, when
-/// root, head, wrists and ankles are not all known, or when the map names a joint the skeleton does
-/// not have. `path` is for the message only.
+/// root, head, wrists, ankles and hips are not all known, or when the map names a joint the
+/// skeleton does not have. `path` is for the message only.
 void assign_roles(Skeleton& skeleton, const std::string& path, const JointMap* map = nullptr);
 
 }  // namespace kinetome
