@@ -238,6 +238,8 @@ void check_options(const ReindexOptions& o) {
     const PoseClusterOptions& p = o.pose_clusters;
     const MixtureOptions& m = p.mixture;
     require(o.frames.amc.rate > 0, "amc-rate must be above 0");
+    require(o.frames.joint_map.empty() || std::filesystem::is_regular_file(o.frames.joint_map),
+            fmt::format("joint-map {}: no such file", o.frames.joint_map));
     require(o.frames.shard_frames >= group_frames,
             fmt::format("shard-frames must be at least {}", group_frames));
     parse_compression(o.frames.compression);
