@@ -19,12 +19,22 @@ namespace fs = std::filesystem;
 struct OpenRun {
     OpenRun(const StoreDirectory& directory, const Log& terminal)
         : store(directory), log(terminal) {
-        if (const auto id = store.current()) last.emplace(store, *id, verified);
+        if (const auto id = store.current()) open_last(*id);
         workspace.emplace(store, last ? &*last : nullptr, verified);
         log.add_file(log_file());
     }
     fs::path log_file() const { return workspace->folder() / "log.txt"; }
     fs::path record() const { return workspace->folder() / "run.json"; }
+
+    /// A damaged generation stays current until the run has made a whole one.
+    void open_last(const std::string& id) {
+        try {
+            last.emplace(store, id, verified);
+        } catch (const StoreError& error) {
+            log.warning("generation {} cannot be built on: {}; everything is made again", id,
+                        error.what());
+        }
+    }
 
     StoreDirectory store;
     VerifiedFiles verified;
