@@ -1,6 +1,7 @@
 // kinetome: parses the command line, hands over to one command, answers with its exit code.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +11,7 @@
 
 #include "command.h"
 #include "kinetome/base/architecture.h"
+#include "kinetome/base/quote.h"
 
 namespace kinetome::cli {
 namespace {
@@ -91,10 +93,16 @@ ExitCode run_main(int argc, char** argv) {
         app.exit(asked);
         return ExitCode::success;
     } catch (const CLI::ParseError& error) {
+        const std::string first = argc > 1 ? argv[1] : "-";
+        const bool known = std::any_of(runs.begin(), runs.end(), [&](const auto& command) {
+            return command.first->get_name() == first;
+        });
         fmt::print(stderr,
                    "kinetome: {}\nkinetome --help lists the commands, kinetome <command> "
                    "--help its options.\n",
-                   error.what());
+                   known || first.starts_with('-')
+                       ? error.what()
+                       : "no command is called " + quote_for_message(first));
         return ExitCode::usage;
     } catch (const Error& error) {
         fmt::print(stderr, "kinetome: {}\n", error.what());
