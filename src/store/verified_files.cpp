@@ -16,7 +16,7 @@ void require_hash(const std::filesystem::path& path, const Digest& expected) {
     if (found == expected) return;
     throw StoreError(
         fmt::format("{} is damaged: its {} bytes have the hash {}, {} was recorded when it was "
-                    "written; restore it from a copy, or remake it with --mode full",
+                    "written; restore it from a copy, or reindex, which remakes it",
                     path.string(), bytes, found.hex(), expected.hex()));
 }
 
