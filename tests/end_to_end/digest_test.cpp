@@ -13,7 +13,7 @@ struct Way {
 std::string digests_of(const fs::path& corpus, const fs::path& store, const Way& way,
                        std::vector<std::string> more) {
     more.insert(more.end(), {"--threads", way.threads, "--shard-frames", way.shard_frames});
-    require_kinetome(reindex(corpus, store, more));
+    require_program(reindex(corpus, store, more));
     return StoreOnDisk(store).digests();
 }
 
@@ -63,19 +63,19 @@ TEST_CASE("a take that comes and goes leaves the digests of a fresh build", "[di
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 24000, 3);
     const StoreOnDisk store(folder / "store");
-    require_kinetome(reindex(corpus, store.path()));
+    require_program(reindex(corpus, store.path()));
     const std::string before = store.digests();
 
     const fs::path guest = corpus / "02" / "02_77.amc";
     write_text(guest, shifted_take(text_of(corpus / "02" / "02_01.amc"), 40));
-    require_kinetome(reindex(corpus, store.path()));
+    require_program(reindex(corpus, store.path()));
     const std::string with_guest = store.digests();
     CHECK(with_guest != before);
-    require_kinetome(reindex(corpus, folder / "fresh"));
+    require_program(reindex(corpus, folder / "fresh"));
     CHECK(StoreOnDisk(folder / "fresh").digests() == with_guest);
 
     fs::remove(guest);
-    require_kinetome(reindex(corpus, store.path()));
+    require_program(reindex(corpus, store.path()));
     CHECK(store.digests() == before);
 }
 
@@ -92,6 +92,6 @@ TEST_CASE("on real takes, neither threads nor the size of shards change a digest
     CHECK(digests({"2", "65536"}) == expected);
     CHECK(digests({"7", "65536"}) == expected);
     const StoreOnDisk store(folder / "7-65536");
-    CHECK(contains(require_kinetome({"info", store.name()}).output,
+    CHECK(contains(require_program({"info", store.name()}).output,
                    "211 indexed, 0 quarantined, 331893 frames"));
 }

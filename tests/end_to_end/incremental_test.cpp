@@ -13,11 +13,11 @@ using Names = std::set<std::string>;
 struct IndexedCorpus {
     explicit IndexedCorpus(int frames = 24000) {
         generate_corpus(corpus, frames, 3);
-        require_kinetome(reindex(corpus, store.path()));
+        require_program(reindex(corpus, store.path()));
         REQUIRE(store.artifacts("frames-").size() > 2);
     }
     CommandResult again(const std::vector<std::string>& more = {}) const {
-        return require_kinetome(reindex(corpus, store.path(), more));
+        return require_program(reindex(corpus, store.path(), more));
     }
 
     TemporaryFolder folder;
@@ -110,7 +110,7 @@ TEST_CASE("a new take alters one shard and what is made of all of them", "[incre
     CHECK(contains(added.output, "(1 new, 0 changed, "));
 
     const CommandResult difference =
-        require_kinetome({"diff", indexed.store.name(), first_generation, "current"});
+        require_program({"diff", indexed.store.name(), first_generation, "current"});
     CHECK(contains(difference.output, "clips added:\n  01_99\n"));
     CHECK_FALSE(contains(difference.output, "clips changed"));
 }
@@ -125,10 +125,10 @@ TEST_CASE("a take that is gone is listed as removed, once", "[incremental]") {
     };
     CHECK(removed() == nlohmann::json::array({"02_02"}));
     CHECK(contains(
-        require_kinetome({"diff", indexed.store.name(), first_generation, "current"}).output,
+        require_program({"diff", indexed.store.name(), first_generation, "current"}).output,
         "clips removed:\n  02_02\n"));
     CHECK_FALSE(
-        contains(require_kinetome({"export", indexed.store.name(), "clips"}).output, "02_02"));
+        contains(require_program({"export", indexed.store.name(), "clips"}).output, "02_02"));
     CHECK(contains(indexed.again().output, "0 removed"));
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("a take of other content counts as changed", "[incremental]") {
     write_text(take, shifted_take(text_of(take), 10));
     CHECK(contains(indexed.again().output, "(0 new, 1 changed, "));
     CHECK(contains(
-        require_kinetome({"diff", indexed.store.name(), first_generation, "current"}).output,
+        require_program({"diff", indexed.store.name(), first_generation, "current"}).output,
         "clips changed:\n  03_01\n"));
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
         fs::copy(indexed.store.path(), copy.path(),
                  fs::copy_options::recursive | fs::copy_options::copy_symlinks);
         const RunLog log(
-            require_kinetome(reindex(indexed.corpus, copy.path(), {change.option, change.value}))
+            require_program(reindex(indexed.corpus, copy.path(), {change.option, change.value}))
                 .errors);
         CHECK(log.names_made() == from_stage_on(copy, change.stage));
         for (const std::string& name : copy.artifacts(change.stage)) {
@@ -192,18 +192,18 @@ TEST_CASE("--only makes the stages it names, and says what is left out", "[incre
     generate_corpus(corpus, 12000, 2);
     const StoreOnDisk store(folder / "store"), fresh(folder / "fresh");
     const CommandResult some =
-        require_kinetome(reindex(corpus, store.path(), {"--only", "frames,features"}));
+        require_program(reindex(corpus, store.path(), {"--only", "frames,features"}));
     CHECK(store.artifacts("pose_clusters").empty());
     CHECK_FALSE(store.artifacts("features-").empty());
     CHECK(contains(some.errors, "pose_clusters: not complete, left out"));
 
     const CommandResult too_far =
-        require_kinetome(reindex(corpus, store.path(), {"--only", "motion_strings"}), 64);
+        require_program(reindex(corpus, store.path(), {"--only", "motion_strings"}), 64);
     CHECK(contains(too_far.errors, "motion_strings needs pose_clusters.h5"));
 
-    const RunLog rest(require_kinetome(reindex(corpus, store.path())).errors);
+    const RunLog rest(require_program(reindex(corpus, store.path())).errors);
     CHECK(rest.names_made() == Names{"motion_strings.h5", "pose_clusters.h5"});
-    require_kinetome(reindex(corpus, fresh.path()));
+    require_program(reindex(corpus, fresh.path()));
     CHECK(store.digests() == fresh.digests());
 }
 
@@ -225,7 +225,7 @@ TEST_CASE("a damaged artifact is found out by verify and made again by reindex",
         INFO(name);
         const fs::path file = indexed.store.file(name);
         flip_bit(file, fs::file_size(file) / 2);
-        const CommandResult verified = require_kinetome({"verify", indexed.store.name()}, 74);
+        const CommandResult verified = require_program({"verify", indexed.store.name()}, 74);
         CHECK(contains(verified.errors, name + ": damaged"));
         CHECK(contains(verified.errors, "in /"));  // the dataset
 

@@ -13,18 +13,18 @@
 #include "support/command.h"
 #include "texts.h"
 
-inline Command kinetome(std::vector<std::string> arguments) {
+inline Command program(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), KINETOME_PROGRAM);
     return {.words = std::move(arguments)};
 }
 
-inline CommandResult run_kinetome(std::vector<std::string> arguments) {
-    return run(kinetome(std::move(arguments)));
+inline CommandResult run_program(std::vector<std::string> arguments) {
+    return run(program(std::move(arguments)));
 }
 
 /// What it wrote to standard output. The test fails here unless it answers `expected`.
-inline CommandResult require_kinetome(std::vector<std::string> arguments, int expected = 0) {
-    CommandResult result = run_kinetome(std::move(arguments));
+inline CommandResult require_program(std::vector<std::string> arguments, int expected = 0) {
+    CommandResult result = run_program(std::move(arguments));
     INFO(result.errors);
     REQUIRE(result.exit_code == expected);
     return result;

@@ -17,7 +17,7 @@ void sleep_seconds(double seconds) {
 /// `current` is absent or a whole generation.
 void require_whole(const StoreOnDisk& store) {
     if (!store.current()) return;
-    const CommandResult verified = run_kinetome({"verify", store.name()});
+    const CommandResult verified = run_program({"verify", store.name()});
     INFO(verified.errors);
     REQUIRE(verified.exit_code == 0);
 }
@@ -26,7 +26,7 @@ bool has_checkpoint(const StoreOnDisk& store) {
     if (!fs::exists(store.run_folder())) return false;
     for (const auto& entry : fs::directory_iterator(store.run_folder())) {
         const std::string name = entry.path().filename().string();
-        if (name.rfind("checkpoint-", 0) == 0 && !contains(name, ".tmp-")) return true;
+        if (name.rfind("checkpoint-", 0) == 0 && !contains(name, ".writing-")) return true;
     }
     return false;
 }
@@ -54,10 +54,10 @@ TEST_CASE("killed at any moment, a run is resumed to the same digests", "[resume
 
     // Every other kill meets a store that already has a generation, of one take less.
     const StoreOnDisk earlier(folder / "earlier");
-    require_kinetome(reindex(corpus, earlier.path()));
+    require_program(reindex(corpus, earlier.path()));
     write_text(guest, shifted_take(text_of(corpus / "01" / "01_01.amc"), 25));
     const StoreOnDisk whole(folder / "whole");
-    const double duration = require_kinetome(reindex(corpus, whole.path())).seconds;
+    const double duration = require_program(reindex(corpus, whole.path())).seconds;
     const std::string expected = whole.digests();
 
     std::mt19937 random(20);
@@ -71,13 +71,13 @@ TEST_CASE("killed at any moment, a run is resumed to the same digests", "[resume
         if (i % 2)
             fs::copy(earlier.path(), store.path(),
                      fs::copy_options::recursive | fs::copy_options::copy_symlinks);
-        Process process(kinetome(reindex(corpus, store.path())));
+        Process process(program(reindex(corpus, store.path())));
         sleep_seconds(moment);
         process.signal(SIGKILL);
         killed += process.wait().signal == SIGKILL;
         require_whole(store);
 
-        require_kinetome(reindex(corpus, store.path()));
+        require_program(reindex(corpus, store.path()));
         CHECK(store.digests() == expected);
         CHECK(store.artifact_bytes() == whole.artifact_bytes());
         CHECK_FALSE(fs::exists(store.run_folder()));
@@ -92,14 +92,14 @@ TEST_CASE("killed while it clusters, a run goes on after its last iteration", "[
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 12000, 2);
     const StoreOnDisk whole(folder / "whole"), store(folder / "store");
-    require_kinetome(slow_clustering(corpus, whole.path()));
+    require_program(slow_clustering(corpus, whole.path()));
 
-    Process process(kinetome(slow_clustering(corpus, store.path())));
+    Process process(program(slow_clustering(corpus, store.path())));
     wait_until([&] { return has_checkpoint(store) || process.ended(); });
     process.signal(SIGKILL);
     REQUIRE(process.wait().signal == SIGKILL);
 
-    const CommandResult resumed = require_kinetome(slow_clustering(corpus, store.path()));
+    const CommandResult resumed = require_program(slow_clustering(corpus, store.path()));
     CHECK(contains(resumed.errors, "goes on after iteration"));
     CHECK_FALSE(contains(resumed.errors, "goes on after iteration 0"));
     const RunLog log(resumed.errors);
@@ -114,9 +114,9 @@ TEST_CASE("a damaged checkpoint is not gone on from", "[resume]") {
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 6000, 1);
     const StoreOnDisk whole(folder / "whole"), store(folder / "store");
-    require_kinetome(slow_clustering(corpus, whole.path()));
+    require_program(slow_clustering(corpus, whole.path()));
 
-    Process process(kinetome(slow_clustering(corpus, store.path())));
+    Process process(program(slow_clustering(corpus, store.path())));
     wait_until([&] { return has_checkpoint(store) || process.ended(); });
     process.signal(SIGKILL);
     REQUIRE(process.wait().signal == SIGKILL);
@@ -126,7 +126,7 @@ TEST_CASE("a damaged checkpoint is not gone on from", "[resume]") {
         bytes[bytes.size() / 2] ^= 0x10;
         write_text(entry.path(), bytes);
     }
-    const CommandResult resumed = require_kinetome(slow_clustering(corpus, store.path()));
+    const CommandResult resumed = require_program(slow_clustering(corpus, store.path()));
     CHECK_FALSE(contains(resumed.errors, "goes on after"));
     CHECK(store.digests() == whole.digests());
 }
@@ -136,12 +136,12 @@ TEST_CASE("asked to stop, a run keeps its work and says how to resume", "[resume
     const fs::path corpus = folder / "it's takes";  // a name the printed command must quote
     generate_corpus(corpus, 12000, 2);
     const StoreOnDisk whole(folder / "whole");
-    require_kinetome(slow_clustering(corpus, whole.path()));
+    require_program(slow_clustering(corpus, whole.path()));
 
     for (const int signal : {SIGTERM, SIGINT}) {
         INFO("signal " << signal);
         const StoreOnDisk store(folder / ("store-" + std::to_string(signal)));
-        Process process(kinetome(slow_clustering(corpus, store.path())));
+        Process process(program(slow_clustering(corpus, store.path())));
         wait_until([&] { return has_checkpoint(store) || process.ended(); });
         process.signal(signal);
         const CommandResult stopped = process.wait();
@@ -163,14 +163,14 @@ TEST_CASE("asked to stop at any moment, a run answers with 75 or has finished", 
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 16000, 2);
     const StoreOnDisk whole(folder / "whole");
-    const double duration = require_kinetome(reindex(corpus, whole.path())).seconds;
+    const double duration = require_program(reindex(corpus, whole.path())).seconds;
 
     std::mt19937 random(6);
     std::uniform_real_distribution<double> somewhere(0, 1);
     constexpr int moments = 6;
     for (int i = 0; i < moments; ++i) {
         const StoreOnDisk store(folder / ("store-" + std::to_string(i)));
-        Process process(kinetome(reindex(corpus, store.path())));
+        Process process(program(reindex(corpus, store.path())));
         // Not before the program has got so far as to watch for signals.
         wait_until([&] { return fs::exists(store.path()) || process.ended(); });
         sleep_seconds(duration * (i + somewhere(random)) / moments);
@@ -179,7 +179,7 @@ TEST_CASE("asked to stop at any moment, a run answers with 75 or has finished", 
         INFO(stopped.errors);
         REQUIRE((stopped.exit_code == interrupted || stopped.exit_code == 0));
         require_whole(store);
-        require_kinetome(reindex(corpus, store.path()));
+        require_program(reindex(corpus, store.path()));
         CHECK(store.digests() == whole.digests());
     }
 }

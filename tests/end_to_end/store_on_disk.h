@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinetome/base/csv.h"
 #include "program.h"
 #include "texts.h"
 
@@ -69,7 +70,7 @@ class StoreOnDisk {
 
     /// What `verify --digest` prints: one line a dataset. Requires that the store is whole.
     std::string digests() const {
-        const CommandResult result = require_kinetome({"verify", name(), "--digest"});
+        const CommandResult result = require_program({"verify", name(), "--digest"});
         REQUIRE(!result.output.empty());
         return result.output;
     }
@@ -77,3 +78,25 @@ class StoreOnDisk {
   private:
     fs::path path_;
 };
+
+/// What `export clips` tells of a clip.
+struct ClipState {
+    std::string source, state, reason;
+};
+
+/// By name.
+inline std::map<std::string, ClipState> clips_in(const fs::path& store) {
+    const CommandResult exported = require_program({"export", store.string(), "clips"});
+    auto records = kinetome::parse_csv(exported.output, "clips");
+    REQUIRE(records.at(0).fields == std::vector<std::string>{"clip", "source", "class", "rate",
+                                                             "frames", "state", "reason"});
+    records.erase(records.begin());
+    std::map<std::string, ClipState> clips;
+    for (const kinetome::CsvRecord& record : records) {
+        REQUIRE(record.fields.size() == 7);
+        const auto text = [&](size_t i) { return kinetome::from_csv_text(record.fields[i]); };
+        clips[text(0)] = {text(1), text(5), text(6)};
+    }
+    REQUIRE(clips.size() == records.size());
+    return clips;
+}

@@ -9,9 +9,9 @@
 #include "texts.h"
 
 inline void generate_corpus(const fs::path& folder, int frames, int subjects, int seed = 1) {
-    require_kinetome({"generate", "--frames", std::to_string(frames), "--subjects",
-                      std::to_string(subjects), "--seed", std::to_string(seed), "--quiet", "-o",
-                      folder.string()});
+    require_program({"generate", "--frames", std::to_string(frames), "--subjects",
+                     std::to_string(subjects), "--seed", std::to_string(seed), "--quiet", "-o",
+                     folder.string()});
 }
 
 /// The take as performed `centimetres` further along x: other numbers, the same motion.
