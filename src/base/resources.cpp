@@ -18,6 +18,9 @@
 namespace kinetome {
 namespace {
 
+/// Far above what a node has, far below what the kernel refuses half-way.
+constexpr int most_threads = 4096;
+
 constexpr uint64_t mebibyte = uint64_t{1} << 20;
 /// When nothing says how much there is: what any machine of this century has.
 constexpr uint64_t modest_memory = uint64_t{1} << 30;
@@ -120,6 +123,10 @@ Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> 
                             const GrantSources& sources) {
     if (threads && *threads <= 0) {
         throw UsageError(fmt::format("--threads {} is not positive: give at least 1", *threads));
+    }
+    if (threads && *threads > most_threads) {
+        throw UsageError(fmt::format("--threads {} is more than {}, the most there can be",
+                                     *threads, most_threads));
     }
     if (memory_bytes && *memory_bytes == 0) {
         throw UsageError("--memory 0 is not positive: give for example 8G");

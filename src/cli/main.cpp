@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "command.h"
@@ -26,6 +28,7 @@ extern "C" void request_stop(int) {
 void watch_signals() {
     struct sigaction action = {};
     action.sa_handler = request_stop;
+    action.sa_flags = SA_RESETHAND;  // the first signal asks, a second one ends
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
@@ -57,13 +60,21 @@ ExitCode run_command(const Run& run, const CommonOptions& common, const std::str
     Log log;
     try {
         log = Log(common.log);
-        return run({common, log, StopToken(stop_requested)});
+        const ExitCode code = run({common, log, StopToken(stop_requested)});
+        // A reader that has seen enough (`| head`) is no error.
+        if (std::fflush(stdout) != 0 && errno != EPIPE) {
+            throw StoreError("standard output: cannot write: is its disk full?");
+        }
+        return code;
     } catch (const Interrupted&) {
         log.warning("stopped; finished work is kept. To resume: {}", again);
         return ExitCode::interrupted;
     } catch (const Error& error) {
         log.error("{}", error.what());
         return error.exit_code();
+    } catch (const std::system_error& error) {  // of files and folders, or standard output
+        log.error("{}", error.what());
+        return ExitCode::io;
     } catch (const std::exception& error) {
         log.error("internal error: {}. Please report it with the command line: {}", error.what(),
                   again);
@@ -87,7 +98,6 @@ ExitCode run_main(int argc, char** argv) {
         add_common_options(*sub, common);
     }
     try {
-        require_build_architecture();
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {  // --help, --version
         app.exit(asked);
@@ -119,5 +129,11 @@ ExitCode run_main(int argc, char** argv) {
 }  // namespace kinetome::cli
 
 int main(int argc, char** argv) {
+    try {
+        kinetome::require_build_architecture();
+    } catch (const kinetome::Error& error) {
+        std::fprintf(stderr, "kinetome: %s\n", error.what());
+        return static_cast<int>(error.exit_code());
+    }
     return static_cast<int>(kinetome::cli::run_main(argc, argv));
 }

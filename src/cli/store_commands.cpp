@@ -5,6 +5,7 @@
 #include <set>
 
 #include "command.h"
+#include "kinetome/base/quote.h"
 #include "kinetome/stages/comparison.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/stage.h"
@@ -60,7 +61,7 @@ void print_stages(const Ledger& ledger) {
 void print_lines(const char* title, const std::vector<std::string>& lines) {
     if (lines.empty()) return;
     fmt::print("{}:\n", title);
-    for (const std::string& line : lines) fmt::print("  {}\n", line);
+    for (const std::string& line : lines) fmt::print("  {}\n", path_for_message(line));
 }
 
 /// STORE and --generation, of commands that read one generation.

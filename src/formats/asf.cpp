@@ -7,6 +7,7 @@
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/formats/euler.h"
+#include "text_lines.h"
 
 namespace kinetome {
 namespace {
@@ -95,6 +96,7 @@ Joint joint_from(const AsfBone& bone, const SourceUnits& units, const std::strin
 }  // namespace
 
 Skeleton parse_asf(std::string_view text, const std::string& path) {
+    require_text(text, path);
     AsfFile file = read_asf_file(text, path);
     const BoneTree tree = attach_bones(file, path);
     const std::vector<int> order = bones_below_root(tree);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinetome/base/error.h"
 #include "kinetome/formats/number_text.h"
 
 namespace kinetome {
@@ -59,6 +60,12 @@ double TextLines::number_at(size_t index) const {
         fail_expected("a finite number", word);
     }
     return value;
+}
+
+void require_text(std::string_view text, const std::string& path) {
+    const size_t zero = text.find('\0');
+    if (zero == std::string_view::npos) return;
+    throw InputError::at_byte(path, static_cast<int64_t>(zero), "expected text, found a zero byte");
 }
 
 }  // namespace kinetome

@@ -51,4 +51,7 @@ class TextLines {
     bool again_ = false;
 };
 
+/// Throws InputError for a zero byte: names are stored as texts that end at one.
+void require_text(std::string_view text, const std::string& path);
+
 }  // namespace kinetome

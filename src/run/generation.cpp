@@ -12,14 +12,16 @@ Generation::Generation(const StoreDirectory& store, const std::string& id, Verif
     const std::string catalog = read_file(catalog_path);
     const auto written = ledger_.texts.find("catalog.json");
     if (written == ledger_.texts.end() || written->second != digest_of(catalog)) {
-        throw StoreError(catalog_path.string() + ": damaged: its bytes do not match the ledger");
+        throw DamagedError(catalog_path.string() + ": damaged: its bytes do not match the ledger");
     }
     catalog_ = parse_catalog(catalog, catalog_path);
 }
 
 ArtifactReader Generation::open(const std::string& file_name) const {
     const Receipt* receipt = ledger_.find(file_name);
-    if (!receipt) throw StoreError(folder_.string() + ": generation has no " + file_name);
+    if (!receipt)
+        throw StoreError(folder_.string() + ": generation has no " + file_name +
+                         "; `kinetome reindex` without --only makes it");
     return ArtifactReader(folder_ / file_name, receipt->file.hash, *verified_);
 }
 

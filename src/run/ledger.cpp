@@ -114,7 +114,7 @@ Ledger parse_ledger(std::string_view json, const std::filesystem::path& path) {
         const Json& body = whole.at("ledger");
         // The text counts too: 1e-5 and 1E-5 are one number, but only one of them was written.
         if (whole.at("hash") != digest_of(dump_json(body, -1)).hex() || json != text_of(whole)) {
-            throw StoreError(path.string() + ": the ledger does not match its own hash: damaged");
+            throw DamagedError(path.string() + ": the ledger does not match its own hash: damaged");
         }
         Ledger ledger;
         ledger.version = body.at("version");

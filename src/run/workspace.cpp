@@ -55,7 +55,7 @@ std::optional<FinishedWork> Workspace::in_generation(const std::string& file_nam
 
 std::optional<FinishedWork> Workspace::find(const std::string& file_name,
                                             const StageKey& key) const {
-    for (auto work : {in_run(file_name), in_generation(file_name)}) {
+    for (auto work : {in_generation(file_name), in_run(file_name)}) {
         if (work && work->receipt.key.digest() == key.digest() && is_intact(*work)) return work;
     }
     return std::nullopt;

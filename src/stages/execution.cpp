@@ -10,9 +10,9 @@
 namespace kinetome {
 namespace {
 
-/// Bytes that a claimed frame takes in the store, all stages together: 155 values of frames and
-/// 159 of features on a skeleton of 31 joints, with room for larger ones.
-constexpr uint64_t store_bytes_per_frame = 2048;
+/// Bytes that a claimed frame takes in a sharded stage: 155 values in frames, 159 in features on a
+/// skeleton of 31 joints, with room for larger ones.
+constexpr uint64_t bytes_per_frame_and_stage = 1024;
 
 bool is_selected(const RunPlan& plan, const PlannedWork& work, const Selection& selection) {
     if (!selection.stages.empty() && !selection.stages.count(work.stage->name)) return false;
@@ -29,17 +29,17 @@ void require_room(const RunPlan& plan, const Selection& selection, const Finishe
     uint64_t frames = 0;
     for (size_t i = 0; i < plan.work.size(); ++i) {
         const PlannedWork& work = plan.work[i];
-        if (work.shard && work.stage->inputs.empty() && !finished[i] &&
-            is_selected(plan, work, selection)) {
+        if (work.shard && !finished[i] && is_selected(plan, work, selection)) {
             frames += static_cast<uint64_t>(work.shard->claimed_frames);
         }
     }
-    const uint64_t needed = frames * store_bytes_per_frame;
+    const uint64_t needed = frames * bytes_per_frame_and_stage;
     const uint64_t free = free_bytes(workspace.folder());
     if (needed > free) {
-        throw CreateError(fmt::format("{}: this run needs about {}, but only {} are free",
-                                      workspace.store().path().string(), describe_bytes(needed),
-                                      describe_bytes(free)));
+        throw CreateError(fmt::format(
+            "{}: this run needs about {}, but only {} are free: free "
+            "space, or choose a store on another disk",
+            workspace.store().path().string(), describe_bytes(needed), describe_bytes(free)));
     }
 }
 

@@ -42,7 +42,8 @@ std::string write_json(const Table& table) {
         }
         rows.push_back(std::move(object));
     }
-    return dump_json(rows, 1) + "\n";
+    // Bytes that are no UTF-8 have no JSON: a reader gets U+FFFD.
+    return rows.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 /// Letters of one partition; frames at the pose rate become frames of the source: a source frame

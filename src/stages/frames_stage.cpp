@@ -25,6 +25,17 @@ namespace {
 /// Memory that a take needs between being read and being written, per byte of its source.
 constexpr uint64_t working_bytes_per_source_byte = 4;
 
+/// The survey could read the file, so a failure now is the disk's, not the take's: it must not be
+/// remembered as the take's under the key of its content.
+std::string read_again(const std::filesystem::path& path) {
+    try {
+        return read_source_file(path);
+    } catch (const InputError& error) {
+        throw StoreError(std::string(error.what()) +
+                         "; it could be read when the run began: run the same command again");
+    }
+}
+
 /// A skeleton file, parsed once and shared by its takes; the error is kept for each of them.
 class SkeletonFiles {
   public:
@@ -56,7 +67,7 @@ class SkeletonFiles {
   private:
     void load(const std::string& source, Entry& entry) {
         try {
-            const std::string bytes = read_source_file(context_.survey.corpus / source);
+            const std::string bytes = read_again(context_.survey.corpus / source);
             entry.content = digest_of(bytes);
             const std::string path = path_for_message(source);
             entry.skeleton = with_roles(parse_asf(bytes, path), path);
@@ -88,14 +99,15 @@ std::vector<std::string> capabilities_of(const Skeleton& skeleton) {
 
 void check_unchanged(const Take& take, const std::string& bytes, const Digest& skeleton) {
     if (content_digest(bytes, skeleton) == take.content) return;
-    throw StoreError(take.source + ": changed while it was being read; run the same command again");
+    throw StoreError(path_for_message(take.source) +
+                     ": changed while it was being read; run the same command again");
 }
 
 void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& passenger) {
     const Take& take = *passenger.take;
     passenger.outcome.clip = take.name;
     try {
-        const std::string bytes = read_source_file(context.survey.corpus / take.source);
+        const std::string bytes = read_again(context.survey.corpus / take.source);
         const TakeFormat& format =
             *find_take_format(std::filesystem::path(take.source).extension().string());
         TakeSource source{.bytes = bytes,
@@ -103,13 +115,16 @@ void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& pas
                           .skeleton = nullptr,
                           .default_rate = context.options.frames.amc.rate};
         Digest skeleton_content;
+        const SkeletonFiles::Entry* entry = nullptr;
         if (!take.skeleton_source.empty()) {
-            const SkeletonFiles::Entry& entry = skeletons.get(take.skeleton_source);
-            if (!entry.skeleton) throw InputError(entry.error);
-            source.skeleton = entry.skeleton;
-            skeleton_content = entry.content;
+            entry = &skeletons.get(take.skeleton_source);
+            skeleton_content = entry->content;
         }
         check_unchanged(take, bytes, skeleton_content);
+        if (entry) {
+            if (!entry->skeleton) throw InputError(entry->error);
+            source.skeleton = entry->skeleton;
+        }
         StoredClip stored{take.name, format.parse(source), {}};
         if (!source.skeleton) {
             stored.clip.skeleton = skeletons.with_roles(*stored.clip.skeleton, source.path);

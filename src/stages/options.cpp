@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <toml++/toml.h>
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <regex>
 #include <sstream>
 #include <utility>
@@ -26,13 +29,15 @@ namespace {
 /// Text of a value and back; one overload a type that an option may have.
 template <class T>
 requires(std::integral<T> || std::floating_point<T>) struct ValueText {
-    static constexpr OptionKind kind = OptionKind::number;
     static std::string get(T value) { return fmt::format("{}", value); }
     static void set(const std::string& name, const std::string& text, T& value) {
         T parsed{};
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
         if (error != std::errc() || end != text.data() + text.size()) {
             refuse(name, text, std::integral<T> ? "a whole number" : "a number");
+        }
+        if constexpr (std::floating_point<T>) {
+            if (!std::isfinite(parsed)) refuse(name, text, "a finite number");
         }
         value = parsed;
     }
@@ -258,6 +263,9 @@ void check_options(const ReindexOptions& o) {
             "least-clusters must be above 0 and not above most-clusters");
     require(m.max_iterations > 0 && m.restarts > 0 && m.start_sample > 0,
             "max-iterations, restarts and start-sample must be above 0");
+    require(m.min_gain >= 0, "min-gain must not be negative");
+    require(m.seed <= std::numeric_limits<int64_t>::max(),
+            fmt::format("seed must be at most {}", std::numeric_limits<int64_t>::max()));
     require(m.variance_floor > 0, "variance-floor must be above 0");
     require(o.motion_strings.longest_submotion > 0, "longest-submotion must be above 0");
     require(o.motion_strings.tau >= 0, "tau must not be negative");

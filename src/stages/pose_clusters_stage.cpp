@@ -71,7 +71,8 @@ void save(const PoseClusterProgress& progress, const std::filesystem::path& path
     out.save(path);
 }
 
-std::optional<PoseClusterProgress> load(const std::filesystem::path& path) {
+/// Nothing when there is none, or when another version of this program made it.
+std::optional<PoseClusterProgress> load(const std::filesystem::path& path) try {
     auto in = CheckpointReader::open(path);
     if (!in) return std::nullopt;
     PoseClusterProgress progress;
@@ -93,6 +94,8 @@ std::optional<PoseClusterProgress> load(const std::filesystem::path& path) {
         progress.best.tried.push_back(one);
     }
     return progress;
+} catch (const StoreError&) {
+    return std::nullopt;
 }
 
 Pca principal_components(const StageContext& context, const PosePartition& partition) {

@@ -8,6 +8,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
 
 namespace kinetome {
 namespace {
@@ -85,7 +86,8 @@ void check_laws(const RunPlan& plan, const Publication& publication) {
         fmt::format("indexed ({}) = reused ({}) + new ({}) + changed ({})", catalog.indexed(),
                     publication.reused, publication.added, publication.changed));
     for (const CatalogClip& clip : catalog.clips) {
-        require_law(!clip.indexed() || clip.frames > 0, clip.name + ": an indexed clip has frames");
+        require_law(!clip.indexed() || clip.frames > 0,
+                    path_for_message(clip.name) + ": an indexed clip has frames");
     }
     std::map<std::string, Digest> keys;
     for (const PlannedWork& work : plan.work) keys[work.file_name] = work.key.digest();
@@ -108,6 +110,7 @@ bool is_up_to_date(const Generation* last, const Publication& publication,
     }
     Catalog same = publication.catalog;
     same.removed = last->catalog().removed;  // tells of the step before, not of what is there
+    same.corpus = last->catalog().corpus;    // the same folder may be written another way
     return publication.catalog.removed.empty() &&
            write_catalog(same) == write_catalog(last->catalog()) &&
            publication.ledger.receipts.size() == last->ledger().receipts.size() &&

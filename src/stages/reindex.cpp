@@ -8,6 +8,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
 #include "kinetome/run/meter.h"
 
 namespace kinetome {
@@ -30,7 +31,7 @@ struct OpenRun {
     void open_last(const std::string& id) {
         try {
             last.emplace(store, id, verified);
-        } catch (const StoreError& error) {
+        } catch (const DamagedError& error) {
             log.warning("generation {} cannot be built on: {}; everything is made again", id,
                         error.what());
         }
@@ -54,10 +55,21 @@ void announce(const Resources& resources, const Log& log) {
              describe_bytes(resources.memory_bytes), resources.memory_source);
 }
 
-void announce(const RunPlan& plan, const Log& log) {
-    log.info("{}: {} takes claim {} frames; {} shards of about {} frames",
-             plan.survey.corpus.string(), plan.survey.takes.size(), plan.survey.claimed_frames(),
-             plan.shards.size(), plan.options.frames.shard_frames);
+/// Before anything is made on disk for it.
+void require_folder(const fs::path& corpus) {
+    std::error_code error;
+    if (fs::is_directory(corpus, error)) return;
+    throw Error(ExitCode::nothing_usable, fmt::format("{}: {}", path_for_message(corpus.string()),
+                                                      error ? error.message() : "no such folder"));
+}
+
+/// Tells the plan, and leaves the record that `publish` starts from.
+void enter(const RunPlan& plan, const OpenRun& run) {
+    run.log.info("{}: {} takes claim {} frames; {} shards of about {} frames",
+                 plan.survey.corpus.string(), plan.survey.takes.size(),
+                 plan.survey.claimed_frames(), plan.shards.size(),
+                 plan.options.frames.shard_frames);
+    write_file_atomically(run.record(), write_run_record(plan.survey, plan.options));
 }
 
 std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& before,
@@ -84,7 +96,7 @@ std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& bef
     return summaries;
 }
 
-/// Publishes, then forgets the run in progress: its work lives in the generation now.
+/// Publishes, then forgets the run in progress, unless it holds work of stages that were left out.
 RunSummary finish(OpenRun& run, const RunPlan& plan, const FinishedPlan& before,
                   const FinishedPlan& after, bool copy, const Meter& meter) {
     RunSummary summary;
@@ -94,7 +106,9 @@ RunSummary finish(OpenRun& run, const RunPlan& plan, const FinishedPlan& before,
     for (const StageSummary& stage : summary.stages) {
         summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, stage.cost.peak_bytes);
     }
-    run.workspace->remove();
+    const bool all_published =
+        std::all_of(after.begin(), after.end(), [](const auto& work) { return work.has_value(); });
+    if (all_published) run.workspace->remove();
     return summary;
 }
 
@@ -105,6 +119,7 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     const auto limit = limit_threads(request.resources);
     announce(request.resources, terminal);
     for (const std::string& stage : request.only) stage_named(stage);
+    require_folder(request.corpus);
 
     StoreDirectory store = StoreDirectory::open_or_create(request.store);
     const StoreLock lock = store.lock_writer();
@@ -113,18 +128,21 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
 
     const RunPlan plan(survey_corpus(request.corpus, request.resources.threads, run.log, stop),
                        request.options);
-    announce(plan, run.log);
-    write_file_atomically(run.record(), write_run_record(plan.survey, plan.options));
+    enter(plan, run);
+    const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, *run.workspace);
     const FinishedPlan after = carry_out(plan, {.stages = request.only, .slice = {}},
                                          *run.workspace, request.resources, run.log, stop);
-    return finish(run, plan, before, after, request.copy, meter);
+    RunSummary summary = finish(run, plan, before, after, request.copy, meter);
+    summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, survey_peak);
+    return summary;
 }
 
 IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& slice,
                      const Log& terminal, const StopToken& stop) {
     const auto limit = limit_threads(request.resources);
     announce(request.resources, terminal);
+    require_folder(request.corpus);
     StoreDirectory store = StoreDirectory::open_or_create(request.store);
     const StoreLock lock =
         slice ? store.lock_slice(fmt::format("slice-{}-of-{}", slice->index, slice->count))
@@ -133,8 +151,7 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
 
     const RunPlan plan(survey_corpus(request.corpus, request.resources.threads, run.log, stop),
                        request.options);
-    announce(plan, run.log);
-    write_file_atomically(run.record(), write_run_record(plan.survey, plan.options));
+    enter(plan, run);
     const FinishedPlan finished = carry_out(plan, {.stages = {"frames"}, .slice = slice},
                                             *run.workspace, request.resources, run.log, stop);
 

@@ -8,6 +8,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
 #include "kinetome/stages/stage.h"
 
 namespace kinetome {
@@ -47,8 +48,10 @@ void check_laws(const Generation& generation, Findings& findings) {
     const Catalog& catalog = generation.catalog();
     std::set<std::string> names, shards;
     for (const CatalogClip& clip : catalog.clips) {
-        findings.require(names.insert(clip.name).second, clip.name + ": in the catalog twice");
-        findings.require(clip.id == clip_id(clip.name), clip.name + ": has another clip's id");
+        findings.require(names.insert(clip.name).second,
+                         path_for_message(clip.name) + ": in the catalog twice");
+        findings.require(clip.id == clip_id(clip.name),
+                         path_for_message(clip.name) + ": has another clip's id");
         shards.insert(clip.shard);
     }
     std::set<std::string> kept;
@@ -114,7 +117,9 @@ std::vector<std::string> verify_generation(const StoreDirectory& store, const st
             known.insert(name);
         }
         for (const Receipt& receipt : generation.ledger().receipts) {
-            check_file(generation.folder() / receipt.file.file_name, receipt, findings);
+            findings.note([&] {
+                check_file(generation.folder() / receipt.file.file_name, receipt, findings);
+            });
             known.insert(receipt.file.file_name);
         }
         for (const auto& entry : fs::directory_iterator(generation.folder())) {

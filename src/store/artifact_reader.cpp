@@ -137,8 +137,8 @@ size_t ArtifactReader::value_count(std::string_view dataset, ElementType type, i
     const DatasetSpec& found = spec(dataset);
     const int64_t rows = *state_->layout(found, type).rows;
     if (first < 0 || count < 0 || first > rows || count > rows - first) {
-        throw StoreError(fmt::format("{} in {} has {} rows: rows {} to {} do not exist", dataset,
-                                     state_->path.string(), rows, first, first + count));
+        throw StoreError(fmt::format("{} in {} has {} rows: {} from row {} on do not exist",
+                                     dataset, state_->path.string(), rows, count, first));
     }
     return static_cast<size_t>(count * found.values_per_row());
 }

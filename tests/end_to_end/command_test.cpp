@@ -239,7 +239,7 @@ TEST_CASE("diff tells options, files and content that differ, and nothing else",
     CHECK(contains(require_program({"diff", store.name(), first, first}).output, "no difference"));
 }
 
-TEST_CASE("--quiet leaves warnings and errors alone", "[commands]") {
+TEST_CASE("the option --quiet leaves warnings and errors alone", "[commands]") {
     SmallCorpus corpus;
     corpus.add_good_take();
     CHECK(corpus.reindex(0, {"--quiet"}).errors.empty());
@@ -250,7 +250,7 @@ TEST_CASE("--quiet leaves warnings and errors alone", "[commands]") {
     CHECK(contains(corpus.reindex(65, {"--quiet"}).errors, " error "));
 }
 
-TEST_CASE("with --log-format json, every line is an object; with --log-file, a file has it too",
+TEST_CASE("with --log-format json, every line is an object, and with --log-file a file has it too",
           "[commands]") {
     SmallCorpus corpus;
     corpus.add_good_take();

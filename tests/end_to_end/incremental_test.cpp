@@ -186,7 +186,8 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
     }
 }
 
-TEST_CASE("--only makes the stages it names, and says what is left out", "[incremental]") {
+TEST_CASE("the option --only makes the stages it names, and says what is left out",
+          "[incremental]") {
     const TemporaryFolder folder;
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 12000, 2);

@@ -81,7 +81,10 @@ TEST_CASE("killed at any moment, a run is resumed to the same digests", "[resume
         CHECK(store.digests() == expected);
         CHECK(store.artifact_bytes() == whole.artifact_bytes());
         CHECK_FALSE(fs::exists(store.run_folder()));
-        CHECK(store.generations().size() == (i % 2 ? 2 : 1));
+        // A generation that the killed run completed but did not make current may be left.
+        for (const std::string& id : store.generations()) {
+            CHECK(run_program({"verify", store.name(), "--generation", id}).exit_code == 0);
+        }
         fs::remove_all(store.path());
     }
     CHECK(killed >= moments / 2);  // else hardly any run was caught at work

@@ -103,7 +103,7 @@ TEST_CASE("a clip that begins with a vertical hip axis takes its heading from th
     CHECK((marker(markers, 0, head) - Eigen::RowVector3f(0, 20, -50)).norm() < 1e-4F);
 }
 
-TEST_CASE("a skeleton without hips is refused, naming the hip; an empty clip has no markers") {
+TEST_CASE("a skeleton without hips is refused, naming the hip, an empty clip has no markers") {
     Skeleton body = small_body::skeleton();
     CHECK(normalised_markers(body, small_body::wandering(0), MatrixF(0, 24)).rows() == 0);
     body.set_role(JointRole::left_hip, -1);

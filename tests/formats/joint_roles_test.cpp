@@ -82,7 +82,7 @@ TEST_CASE("a joint map that names no joint of the rig is refused") {
                       Contains("'a'") && Contains("root"));
 }
 
-TEST_CASE("a joint map is read from TOML; what is no role or no name is refused") {
+TEST_CASE("a joint map is read from TOML, what is no role or no name is refused") {
     const TemporaryFolder folder;
     const JointMap map =
         load_joint_map(folder.write("map.toml", "left_ankle = \"LeftFoot\"\nhead = 'Head'\n"));

@@ -1,5 +1,6 @@
 #include "kinetome/store/artifact.h"
 
+#include <dlfcn.h>
 #include <malloc.h>
 
 #include <catch2/catch.hpp>
@@ -42,6 +43,8 @@ std::vector<Compression> compressions_here() {
     std::vector<Compression> found{Compression::none, Compression::gzip};
     try {
         found.push_back(parse_compression("blosc"));
+        // HDF5 unloads the plugin at its end, and then what blosc holds would count as leaked.
+        ::dlopen("libblosc.so.1", RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
     } catch (const UsageError&) {
         WARN("SKIPPED: blosc, whose HDF5 plugin is not installed");
     }

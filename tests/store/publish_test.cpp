@@ -144,7 +144,7 @@ TEST_CASE("a writer killed at any moment leaves current whole, and the next one 
     const std::chrono::duration<double, std::micro> needed =
         std::chrono::steady_clock::now() - start;
     RandomStream random(7, "kill -9 while publishing");
-    for (int kill = 0; kill < 50; ++kill) {
+    for (int kill = 0; kill < 30; ++kill) {
         const pid_t child = ::fork();
         if (child == 0) {
             ::alarm(60);

@@ -61,7 +61,7 @@ TEST_CASE("feet stand where the posture puts them, whatever the pelvis does") {
     }
 }
 
-TEST_CASE("a flat sole is level and its ball as high as the body says; a raised heel turns on it") {
+TEST_CASE("a flat sole is level and its ball as high as the body says, a raised heel turns on it") {
     Stage stage;
     Posture posture = standing();
     stage.solve(posture);

@@ -59,6 +59,11 @@ struct StoreError : Error {
     explicit StoreError(const std::string& message) : Error(ExitCode::io, message) {}
 };
 
+/// What was read is not what was written; making it again may help, where reading again will not.
+struct DamagedError : StoreError {
+    using StoreError::StoreError;
+};
+
 /// A signal asked the run to stop; finished work is kept.
 struct Interrupted : Error {
     Interrupted() : Error(ExitCode::interrupted, "stopped by a signal") {}

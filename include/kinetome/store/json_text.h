@@ -27,7 +27,7 @@ auto convert_json(const Json& json, const std::filesystem::path& path, std::stri
     try {
         return convert(json);
     } catch (const nlohmann::json::exception& error) {
-        throw StoreError(path.string() + ": not " + std::string(what) + ": " + error.what());
+        throw DamagedError(path.string() + ": not " + std::string(what) + ": " + error.what());
     }
 }
 
