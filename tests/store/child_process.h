@@ -13,6 +13,46 @@
 #include <stdexcept>
 #include <string>
 
+/// A forked process that does `work` and ends; killed, at the latest, with this object.
+class ChildProcess {
+  public:
+    template <class Work>
+    explicit ChildProcess(const Work& work) : process_(::fork()) {
+        // Never kill process -1: that is every process.
+        if (process_ < 0) throw std::runtime_error("cannot fork");
+        if (process_ > 0) return;
+        ::alarm(60);
+        try {
+            work();
+        } catch (...) {
+            ::_exit(1);
+        }
+        ::_exit(0);
+    }
+    ~ChildProcess() {
+        kill();
+        wait();
+    }
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    pid_t id() const { return process_; }
+    void kill() {
+        if (!waited_) ::kill(process_, SIGKILL);
+    }
+    /// The status it ended with.
+    int wait() {
+        if (!waited_) ::waitpid(process_, &status_, 0);
+        waited_ = true;
+        return status_;
+    }
+
+  private:
+    pid_t process_;
+    int status_ = -1;
+    bool waited_ = false;
+};
+
 enum class ChildEnd {
     at_once,  ///< _exit
     exit,     ///< exit(): what libraries do at the end is done
@@ -27,7 +67,7 @@ struct ChildResult {
 namespace child_process {
 
 template <class Work>
-[[noreturn]] void work_as_child(int answer, const Work& work, ChildEnd end) {
+void answer(int pipe, const Work& work, ChildEnd end) {
     std::string text;
     int code = 0;
     try {
@@ -36,7 +76,7 @@ template <class Work>
         text = std::string("unexpected: ") + error.what();
         code = 1;
     }
-    if (::write(answer, text.data(), text.size()) < 0) code = 1;
+    if (::write(pipe, text.data(), text.size()) < 0) code = 1;
     if (end == ChildEnd::exit) std::exit(code);
     ::_exit(code);
 }
@@ -51,13 +91,10 @@ ChildResult run_in_child(const Work& work, ChildEnd end = ChildEnd::at_once) {
     std::fflush(nullptr);
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error("pipe");
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("fork");
-    if (child == 0) {
-        ::alarm(60);
+    ChildProcess child([&] {
         ::close(ends[0]);
-        child_process::work_as_child(ends[1], work, end);
-    }
+        child_process::answer(ends[1], work, end);
+    });
     ::close(ends[1]);
     ChildResult result;
     std::array<char, 4096> block;
@@ -65,6 +102,6 @@ ChildResult run_in_child(const Work& work, ChildEnd end = ChildEnd::at_once) {
         result.output.append(block.data(), static_cast<size_t>(got));
     }
     ::close(ends[0]);
-    ::waitpid(child, &result.status, 0);
+    result.status = child.wait();
     return result;
 }

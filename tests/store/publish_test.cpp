@@ -145,18 +145,16 @@ TEST_CASE("a writer killed at any moment leaves current whole, and the next one 
         std::chrono::steady_clock::now() - start;
     RandomStream random(7, "kill -9 while publishing");
     for (int kill = 0; kill < 30; ++kill) {
-        const pid_t child = ::fork();
-        if (child == 0) {
-            ::alarm(60);
-            const StoreLock lock = store.lock_writer();
-            for (int i = 0;; ++i) {
-                publish(store, std::to_string(kill) + " " + std::to_string(i), i % 2 == 1);
-                store.remove_old(3);
-            }
+        {
+            ChildProcess writer([&] {
+                const StoreLock lock = store.lock_writer();
+                for (int i = 0;; ++i) {
+                    publish(store, std::to_string(kill) + " " + std::to_string(i), i % 2 == 1);
+                    store.remove_old(3);
+                }
+            });
+            ::usleep(static_cast<useconds_t>(random.uniform(0, 3) * needed.count()));
         }
-        ::usleep(static_cast<useconds_t>(random.uniform(0, 3) * needed.count()));
-        ::kill(child, SIGKILL);
-        ::waitpid(child, nullptr, 0);
         const auto current = store.current();
         REQUIRE(current);
         CHECK(fault_in(store.generation_folder(*current)) == "");
@@ -177,15 +175,13 @@ TEST_CASE("readers find whole generations while others are published and removed
     const TemporaryFolder folder;
     StoreDirectory store = StoreDirectory::open_or_create(folder.path());
     publish(store, "the first");
-    const pid_t writer = ::fork();
-    if (writer == 0) {
-        ::alarm(60);
+    ChildProcess writer([&] {
         const StoreLock lock = store.lock_writer();
         for (int i = 0;; ++i) {
             publish(store, std::to_string(i));
             store.remove_old(1);
         }
-    }
+    });
     int read = 0, moved_on = 0;
     std::set<std::string> seen;
     while (seen.size() < 15 && read + moved_on < 20'000) {
@@ -201,7 +197,5 @@ TEST_CASE("readers find whole generations while others are published and removed
             ++moved_on;  // between finding it and leasing it: the command is run again
         }
     }
-    ::kill(writer, SIGKILL);
-    ::waitpid(writer, nullptr, 0);
     CHECK(seen.size() == 15);
 }

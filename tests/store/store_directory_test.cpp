@@ -18,45 +18,36 @@ using Catch::Contains;
 
 namespace {
 
-/// Runs a child that takes what `take` returns and holds it until it is killed at the end.
+/// A child that holds what `take` returns until it is killed, at the latest with this object.
 class Holder {
   public:
     template <class Take>
-    explicit Holder(const Take& take) {
-        std::array<int, 2> ends{};
-        if (::pipe(ends.data()) != 0) throw std::runtime_error("pipe");
-        process_ = ::fork();
-        if (process_ == 0) hold(take, ends[1]);
-        ::close(ends[1]);
-        char ready = 0;
-        const bool holds = ::read(ends[0], &ready, 1) == 1;
-        ::close(ends[0]);
+    explicit Holder(const Take& take) : ready_(make_pipe()), child_([&] { hold(take); }) {
+        ::close(ready_[1]);
+        char byte = 0;
+        const bool holds = ::read(ready_[0], &byte, 1) == 1;
+        ::close(ready_[0]);
         if (!holds) throw std::runtime_error("the child could not take it");
     }
-    ~Holder() { kill(); }
-
     void kill() {
-        if (process_ <= 0) return;
-        ::kill(process_, SIGKILL);
-        ::waitpid(process_, nullptr, 0);
-        process_ = 0;
+        child_.kill();
+        child_.wait();
     }
 
   private:
-    template <class Take>
-    [[noreturn]] static void hold(const Take& take, int ready) {
-        ::alarm(60);
-        try {
-            const StoreLock lock = take();
-            if (::write(ready, "!", 1) == 1) {
-                ::close(ready);
-                for (;;) ::pause();
-            }
-        } catch (...) {
-        }
-        ::_exit(1);
+    static std::array<int, 2> make_pipe() {
+        std::array<int, 2> ends{};
+        if (::pipe(ends.data()) != 0) throw std::runtime_error("cannot make a pipe");
+        return ends;
     }
-    pid_t process_ = 0;
+    template <class Take>
+    void hold(const Take& take) const {
+        const StoreLock lock = take();
+        while (::write(ready_[1], "!", 1) == 1) ::pause();
+    }
+
+    std::array<int, 2> ready_;
+    ChildProcess child_;
 };
 
 }  // namespace

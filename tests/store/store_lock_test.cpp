@@ -31,10 +31,9 @@ void leave_lock(const fs::path& path, const nlohmann::json& changes) {
 
 /// Number of a process that has ended.
 pid_t ended_process() {
-    const pid_t child = ::fork();
-    if (child == 0) ::_exit(0);
-    ::waitpid(child, nullptr, 0);
-    return child;
+    ChildProcess child([] {});
+    child.wait();
+    return child.id();
 }
 
 }  // namespace
@@ -89,19 +88,16 @@ TEST_CASE("the end of a forked child does not release its parent's lock") {
 TEST_CASE("the lock of a killed process is taken over, also before its parent noticed") {
     const TemporaryFolder folder;
     const fs::path path = folder / "writer";
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::alarm(60);
+    ChildProcess child([&] {
         const StoreLock lock = StoreLock::take(path);
         for (;;) ::pause();
-    }
+    });
     while (!live_holder(path)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     CHECK_THROWS_AS(StoreLock::take(path), CreateError);
-    ::kill(child, SIGKILL);
+    child.kill();
     siginfo_t ended{};
-    ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+    ::waitid(P_PID, static_cast<id_t>(child.id()), &ended, WEXITED | WNOWAIT);
     CHECK(StoreLock::take(path).held());
-    ::waitpid(child, nullptr, 0);
     CHECK(fs::is_empty(folder.path()));
 }
 
