@@ -43,8 +43,8 @@ namespace fs = std::filesystem;
 struct Take {
     std::string name;
     std::string subject;
-    MatrixF poses;     ///< frames x 62, at 120 Hz
-    MatrixF stacked;   ///< frames x 45, at 30 Hz
+    MatrixF poses;    ///< frames x 62, at 120 Hz
+    MatrixF stacked;  ///< frames x 45, at 30 Hz
     int64_t frames() const { return poses.rows(); }
 };
 
@@ -111,8 +111,7 @@ void cut_to(Corpus& corpus, int64_t frames) {
         if (take.frames() > frames) {
             const auto rows = static_cast<double>(frames) * analysis_rate / 120;
             take.poses.conservativeResize(frames, Eigen::NoChange);
-            take.stacked.conservativeResize(static_cast<int64_t>(std::ceil(rows)),
-                                            Eigen::NoChange);
+            take.stacked.conservativeResize(static_cast<int64_t>(std::ceil(rows)), Eigen::NoChange);
         }
         frames -= take.frames();
     }
@@ -160,8 +159,7 @@ double frames_per_letter(const Corpus& corpus, int64_t frames, int threads) {
     const Rows rows = gather(corpus, frames);
     const MatrixF projected = fit(rows, corpus, threads).project(rows.poses);
     const PoseClusters clusters = fit_pose_clusters(projected, rows.layout, {}, threads);
-    const std::vector<int32_t> letters =
-        likeliest_clusters(clusters.fit.model, projected, threads);
+    const std::vector<int32_t> letters = likeliest_clusters(clusters.fit.model, projected, threads);
     const MotionString string = make_motion_string(letters, rows.clip_frames);
     return static_cast<double>(rows.poses.rows()) / static_cast<double>(string.size());
 }
@@ -187,8 +185,7 @@ double neighbour_distance(const Corpus& corpus, int threads) {
             distances.clear();
             for (int64_t j = 0; j < rows.rows(); ++j) {
                 if (std::abs(i - j) <= second) continue;
-                distances.push_back(
-                    static_cast<double>((rows.row(i) - rows.row(j)).norm()));
+                distances.push_back(static_cast<double>((rows.row(i) - rows.row(j)).norm()));
             }
             if (distances.size() < rank) continue;
             std::nth_element(distances.begin(), distances.begin() + rank - 1, distances.end());

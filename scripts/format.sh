@@ -4,4 +4,4 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode=(-i)
 [ "${1:-}" = --check ] && mode=(--dry-run --Werror)
-git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format "${mode[@]}"
+find include src tests bench -name '*.h' -print0 -o -name '*.cpp' -print0 | xargs -0 clang-format "${mode[@]}"

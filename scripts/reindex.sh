@@ -11,7 +11,7 @@ store=${2:-$root/build/store}
 kinetome=$root/build/release/kinetome
 
 if [ $# -eq 0 ] && [ ! -d "$corpus" ]; then
-  "$kinetome" generate --frames 30000 --seed 1 -o "$corpus" # appears whole or not at all
+  "$kinetome" generate --frames 30000 --subjects 3 --seed 1 -o "$corpus" # appears whole or not at all
 fi
 status=0
 "$kinetome" reindex "$corpus" --store "$store" || status=$?

@@ -8,8 +8,8 @@ using namespace kinetome;
 
 TEST_CASE("any field comes back from the file it was written to") {
     const std::vector<std::string> hostile = {
-        "plain", "",      "a,b",  "say \"no\"", "two\nlines", "return\r\nhere",
-        " ends ", "\"",   "'x",   "<script>",   "=cmd()",     "ümläut"};
+        "plain",  "",   "a,b", "say \"no\"", "two\nlines", "return\r\nhere",
+        " ends ", "\"", "'x",  "<script>",   "=cmd()",     "ümläut"};
     std::string text;
     append_csv_line(text, {"name", "value"});
     for (const std::string& field : hostile) append_csv_line(text, {field, "1"});
