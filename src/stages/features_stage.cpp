@@ -1,9 +1,8 @@
 // features: pose vectors, effector features and marker sets of each clip, shard by shard.
-#include <tbb/parallel_pipeline.h>
-
 #include <algorithm>
 #include <memory>
 
+#include "clip_pipeline.h"
 #include "kinetome/base/progress.h"
 #include "kinetome/features/effectors.h"
 #include "kinetome/features/markers.h"
@@ -21,7 +20,6 @@ struct Passenger {
     StoredClip stored;
     ClipFeatures features;
 };
-using Token = std::shared_ptr<Passenger>;
 
 FeatureClass feature_class_of(const Skeleton& skeleton, const FeatureOptions& options) {
     FeatureClass shared;
@@ -60,16 +58,12 @@ void compute(const FeatureOptions& options, Passenger& passenger) {
     features.effectors = effector_positions(skeleton, graph.clip.motion, graph.positions);
 }
 
-/// Clips that may be in the pipeline at once: two a thread, fewer when the largest ones would not
-/// fit in a quarter of the memory granted.
-size_t clips_in_flight(const StageContext& context, const FrameShardReader& frames) {
+/// Memory that the largest clip of a shard needs on its way.
+uint64_t largest_clip(const FrameShardReader& frames) {
     constexpr uint64_t bytes_per_frame = 4 * 1024;  // a frame, its positions and features, twice
-    uint64_t largest = 1;
-    for (const FrameShardClip& clip : frames.clips()) {
-        largest = std::max(largest, static_cast<uint64_t>(clip.frames));
-    }
-    return std::clamp<uint64_t>(context.resources.memory_bytes / 4 / (largest * bytes_per_frame), 1,
-                                2 * static_cast<uint64_t>(context.resources.threads));
+    int64_t largest = 0;
+    for (const FrameShardClip& clip : frames.clips()) largest = std::max(largest, clip.frames);
+    return static_cast<uint64_t>(largest) * bytes_per_frame;
 }
 
 }  // namespace
@@ -84,23 +78,17 @@ StageResult make_features(const StageContext& context, const StageTask& task) {
     StageResult result;
 
     size_t next = 0;
-    const auto read = [&](tbb::flow_control& control) -> Token {
-        if (next == frames.clips().size() || context.stop.requested()) {
-            control.stop();
-            return nullptr;
-        }
+    const auto read = [&]() -> std::shared_ptr<Passenger> {
+        if (next == frames.clips().size()) return nullptr;
         return std::make_shared<Passenger>(Passenger{frames.read(next++), {}});
     };
-    const auto work = [&](Token passenger) {
-        compute(context.options.features, *passenger);
-        return passenger;
-    };
-    const auto write = [&](const Token& passenger) {
-        const ClipFeatures& features = passenger->features;
+    const auto work = [&](Passenger& passenger) { compute(context.options.features, passenger); };
+    const auto write = [&](const Passenger& passenger) {
+        const ClipFeatures& features = passenger.features;
         if (!writer.has_class(features.clip_class)) {
             writer.begin_class(
                 features.clip_class,
-                feature_class_of(*passenger->stored.clip.skeleton, context.options.features));
+                feature_class_of(*passenger.stored.clip.skeleton, context.options.features));
         }
         writer.add(features);
         if (features.source_rate < context.options.features.pose_rate) {
@@ -110,12 +98,8 @@ StageResult make_features(const StageContext& context, const StageTask& task) {
         }
         progress.advance(features.source_frames);
     };
-    tbb::parallel_pipeline(
-        clips_in_flight(context, frames),
-        tbb::make_filter<void, Token>(tbb::filter_mode::serial_in_order, read) &
-            tbb::make_filter<Token, Token>(tbb::filter_mode::parallel, work) &
-            tbb::make_filter<Token, void>(tbb::filter_mode::serial_in_order, write));
-    context.stop.check();
+    run_clip_pipeline<Passenger>(clips_in_flight(context.resources, largest_clip(frames)),
+                                 context.stop, read, work, write);
     result.file = writer.close();
     return result;
 }

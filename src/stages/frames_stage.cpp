@@ -1,6 +1,5 @@
 // frames: read → parse → kinematics → write, as a pipeline with a bounded number of takes in it.
 #include <fmt/format.h>
-#include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <map>
@@ -8,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "clip_pipeline.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/progress.h"
@@ -142,14 +142,11 @@ void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& pas
     }
 }
 
-/// Takes that may be in the pipeline at once: two a thread, fewer when the largest ones would not
-/// fit in a quarter of the memory granted.
-size_t takes_in_flight(const StageContext& context, const Shard& shard) {
-    uint64_t largest = 1;
-    for (const size_t i : shard.clips) largest = std::max(largest, context.survey.takes[i].bytes);
-    const uint64_t fitting =
-        context.resources.memory_bytes / 4 / (largest * working_bytes_per_source_byte);
-    return std::clamp<uint64_t>(fitting, 1, 2 * static_cast<uint64_t>(context.resources.threads));
+/// Memory that the largest take of a shard needs on its way.
+uint64_t largest_take(const Survey& survey, const Shard& shard) {
+    uint64_t largest = 0;
+    for (const size_t i : shard.clips) largest = std::max(largest, survey.takes[i].bytes);
+    return largest * working_bytes_per_source_byte;
 }
 
 }  // namespace
@@ -163,31 +160,22 @@ StageResult make_frames(const StageContext& context, const StageTask& task) {
     StageResult result;
 
     auto next = shard.clips.begin();
-    using Token = std::shared_ptr<Passenger>;
-    const auto read = [&](tbb::flow_control& control) -> Token {
-        while (next != shard.clips.end() && !context.survey.takes[*next].quarantined.empty())
+    const auto read = [&]() -> std::shared_ptr<Passenger> {
+        while (next != shard.clips.end() && !context.survey.takes[*next].quarantined.empty()) {
             ++next;
-        if (next == shard.clips.end() || context.stop.requested()) {
-            control.stop();
-            return nullptr;
         }
+        if (next == shard.clips.end()) return nullptr;
         return std::make_shared<Passenger>(Passenger{&context.survey.takes[*next++], {}, {}});
     };
-    const auto work = [&](Token passenger) {
-        parse(context, skeletons, *passenger);
-        return passenger;
+    const auto work = [&](Passenger& passenger) { parse(context, skeletons, passenger); };
+    const auto write = [&](Passenger& passenger) {
+        if (passenger.clip) writer.add(*passenger.clip);
+        result.clips.push_back(std::move(passenger.outcome));
+        progress.advance(passenger.take->claimed_frames);
     };
-    const auto write = [&](const Token& passenger) {
-        if (passenger->clip) writer.add(*passenger->clip);
-        result.clips.push_back(std::move(passenger->outcome));
-        progress.advance(passenger->take->claimed_frames);
-    };
-    tbb::parallel_pipeline(
-        takes_in_flight(context, shard),
-        tbb::make_filter<void, Token>(tbb::filter_mode::serial_in_order, read) &
-            tbb::make_filter<Token, Token>(tbb::filter_mode::parallel, work) &
-            tbb::make_filter<Token, void>(tbb::filter_mode::serial_in_order, write));
-    context.stop.check();
+    run_clip_pipeline<Passenger>(
+        clips_in_flight(context.resources, largest_take(context.survey, shard)), context.stop, read,
+        work, write);
     result.file = writer.close();
     return result;
 }
