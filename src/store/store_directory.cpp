@@ -73,6 +73,10 @@ void require_known_format(const fs::path& marker) {
     const int format = convert_json(json, marker, "the mark of a store", [](const Json& top) {
         return top.at("kinetome_format").get<int>();
     });
+    if (format < 1) {
+        throw StoreError(
+            fmt::format("{} is damaged: no store has format {}", shown(marker), format));
+    }
     if (format > store_format) {
         throw StoreError(fmt::format(
             "{} was made by a newer Kinetome (format {}, this one knows up to {}); use that one",
