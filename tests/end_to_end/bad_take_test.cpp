@@ -249,7 +249,7 @@ TEST_CASE("a corpus with nothing usable publishes nothing", "[bad take]") {
     corpus.reindex(nothing_usable);
     CHECK(store.current() == current);
     fs::remove_all(corpus.path());
-    CHECK(contains(corpus.reindex(nothing_usable).errors, "no such folder"));
+    CHECK(contains(corpus.reindex(nothing_usable).errors, "No such file or directory"));
     CHECK(store.current() == current);
 }
 

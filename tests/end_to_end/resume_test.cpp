@@ -87,7 +87,7 @@ TEST_CASE("killed at any moment, a run is resumed to the same digests", "[resume
         }
         fs::remove_all(store.path());
     }
-    CHECK(killed >= moments / 2);  // else hardly any run was caught at work
+    CHECK(killed >= moments / 4);  // else hardly any run was caught at work
 }
 
 TEST_CASE("killed while it clusters, a run goes on after its last iteration", "[resume]") {

@@ -50,35 +50,49 @@ fs::path writer_lock(const StoreOnDisk& store) {
 
 }  // namespace
 
-TEST_CASE("a disk that fills up in mid-run leaves the store as it was", "[store fault]") {
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 6000, 1);
-    const SmallDisk disk(folder / "disk", "32m");
+TEST_CASE("a disk that is full leaves the store as it was", "[store fault]") {
+    SmallCorpus corpus;
+    corpus.add_skeleton("good/good.asf");
+    corpus.add("good/good_1.amc", first_frames(corpus.another_take(), 10));
+    const SmallDisk disk(corpus.folder() / "disk", "32m");
     if (!disk.mounted()) {
         WARN("SKIPPED: no right to mount a small disk");
         return;
     }
-    const StoreOnDisk store(folder / "disk" / "store");
-    require_program(reindex(corpus, store.path()));
+    const StoreOnDisk store(corpus.folder() / "disk" / "store");
+    require_program(reindex(corpus.path(), store.path(), {"--clusters", "2"}));
     const auto current = store.current();
     const std::string digests = store.digests();
+    const auto again =
+        reindex(corpus.path(), store.path(), {"--clusters", "2", "--velocity-reach", "0.03"});
 
-    // The features again: more than what is left.
+    // Another file fails to be written each time: what is left is as much as a few small files.
+    const fs::path ballast = corpus.folder() / "disk" / "ballast";
+    int failed_to_write = 0;
+    for (const int kibibytes_left : {4, 12, 20, 28, 36, 44, 52, 60}) {
+        INFO(kibibytes_left << " KiB left");
+        const auto room = fs::space(store.path()).available;
+        write_text(ballast, std::string(room - 1024 * static_cast<size_t>(kibibytes_left), 'x'));
+        const CommandResult full = require_program(again, cannot_create);
+        failed_to_write += contains(full.errors, "disk full: free space there");
+        require_untouched(store, current, digests);
+        fs::remove(ballast);
+        fs::remove_all(store.run_folder());
+    }
+    CHECK(failed_to_write >= 4);
+
+    // A corpus that has no room from the start is refused before any of it is read.
     const auto room = fs::space(store.path()).available;
-    write_text(folder / "disk" / "ballast", std::string(room - 2'000'000, 'x'));
-    const auto other = reindex(corpus, store.path(), {"--velocity-reach", "0.03"});
-    const CommandResult full = require_program(other, cannot_create);
-    CHECK(contains(full.errors, "disk full: free space there"));
+    write_text(ballast, std::string(room - 1'000'000, 'x'));
+    generate_corpus(corpus.path() / "large", 3000, 1);
+    const CommandResult refused = require_program(again, cannot_create);
+    CHECK(contains(refused.errors, "this run needs about"));
+    CHECK_FALSE(contains(refused.errors, "to be made"));
     require_untouched(store, current, digests);
 
-    // A corpus that is too large from the start is refused before anything is read into it.
-    const fs::path large = folder / "large";
-    generate_corpus(large, 2000, 1);
-    const StoreOnDisk second(folder / "disk" / "second");
-    CHECK(contains(require_program(reindex(large, second.path()), cannot_create).errors,
-                   "this run needs about"));
-    require_untouched(second, std::nullopt, "");
+    fs::remove(ballast);
+    require_program(again);
+    CHECK(store.current() != current);
 }
 
 TEST_CASE("files that may not grow are a full disk, whatever is being written", "[store fault]") {
@@ -153,6 +167,21 @@ TEST_CASE("a folder of another kind is not scribbled in", "[store fault]") {
             require_program({reader, (corpus.folder() / "nowhere").string()}, damaged).errors,
             "there is no store"));
     }
+}
+
+TEST_CASE("any flipped bit of the mark of a store is noticed", "[store fault]") {
+    SmallCorpus corpus;
+    corpus.add_good_take();
+    corpus.reindex(0);
+    const StoreOnDisk store(corpus.store());
+    const fs::path mark = store.path() / "kinetome_store.json";
+    for (size_t bit = 0; bit < 8 * fs::file_size(mark); ++bit) {
+        INFO("bit " << bit);
+        flip_bit(mark, bit);
+        CHECK(run_program({"verify", store.name()}).exit_code == damaged);
+        flip_bit(mark, bit);
+    }
+    CHECK(run_program({"verify", store.name()}).exit_code == 0);
 }
 
 TEST_CASE("a store of a newer format is neither read nor written", "[store fault]") {
