@@ -51,6 +51,8 @@ ReindexOptions ReindexFlags::resolve() const {
             if (given->name == row.name && given->flag->count()) row.set(given->text);
         }
     }
+    std::string& joint_map = options.frames.joint_map;  // `publish` may run in another folder
+    if (!joint_map.empty()) joint_map = std::filesystem::absolute(joint_map).lexically_normal();
     check_options(options);
     return options;
 }
