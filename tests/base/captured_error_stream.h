@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <catch2/catch.hpp>
+
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -43,6 +45,15 @@ std::string captured_error_stream(Body&& body) {
         body();
     }
     return kinetome::read_file(file);
+}
+
+/// Whether this system has pseudo-terminals; a bare container need not. Warns when it has none.
+inline bool has_terminals() {
+    const int screen = ::posix_openpt(O_RDWR | O_NOCTTY);
+    const bool usable = screen >= 0 && ::grantpt(screen) == 0 && ::unlockpt(screen) == 0;
+    if (screen >= 0) ::close(screen);
+    if (!usable) WARN("SKIPPED: no pseudo-terminal to test on");
+    return usable;
 }
 
 /// What `body` writes to standard error when that is a terminal (at most a few kilobytes).

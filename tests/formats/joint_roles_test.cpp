@@ -27,7 +27,8 @@ Skeleton rig(const std::vector<std::string>& names) {
 
 const JointMap map_to_abc = {{JointRole::root, "a"},       {JointRole::head, "b"},
                              {JointRole::left_wrist, "c"}, {JointRole::right_wrist, "d"},
-                             {JointRole::left_ankle, "e"}, {JointRole::right_ankle, "f"}};
+                             {JointRole::left_ankle, "e"}, {JointRole::right_ankle, "f"},
+                             {JointRole::left_hip, "g"},   {JointRole::right_hip, "h"}};
 
 }  // namespace
 
@@ -64,12 +65,13 @@ TEST_CASE("a hostile joint name is listed without its escape codes") {
 }
 
 TEST_CASE("a joint map helps where no scheme does, and has the last word where one does") {
-    Skeleton unknown = rig({"a", "b", "c", "d", "e", "f"});
+    Skeleton unknown = rig({"a", "b", "c", "d", "e", "f", "g", "h"});
     assign_roles(unknown, "a.asf", &map_to_abc);
     CHECK(unknown.role(JointRole::left_ankle) == 4);
     CHECK(unknown.role(JointRole::left_toes) == -1);
 
-    Skeleton known = rig({"root", "head", "lwrist", "rwrist", "ltibia", "rtibia", "lhand"});
+    Skeleton known = rig({"root", "head", "lwrist", "rwrist", "ltibia", "rtibia", "lhand",
+                          "lhipjoint", "rhipjoint"});
     const JointMap hand = {{JointRole::left_wrist, "lhand"}};
     assign_roles(known, "a.asf", &hand);
     CHECK(known.role(JointRole::left_wrist) == 6);

@@ -21,8 +21,8 @@ TEST_CASE("a project elsewhere finds the installed package, builds with it and r
     const TemporaryFolder folder;
     const fs::path prefix = folder / "prefix", build = folder / "build";
     require_cmake({"--install", KINETOME_BUILD, "--prefix", prefix.string()});
-    require_cmake({"-S", KINETOME_CONSUMER, "-B", build.string(), "-DCMAKE_BUILD_TYPE=Debug",
-                   "-DCMAKE_PREFIX_PATH=" + prefix.string(),
+    require_cmake({"-G", "Ninja", "-S", KINETOME_CONSUMER, "-B", build.string(),
+                   "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_PREFIX_PATH=" + prefix.string(),
                    "-DCMAKE_CXX_COMPILER=" KINETOME_COMPILER});
     require_cmake({"--build", build.string()});
 

@@ -130,7 +130,10 @@ TEST_CASE("frame ranges that tile the source tile the warped take") {
     CHECK(warp.frame_at(1000) == warp.frames());
     for (const int64_t boundary : {100, 101, 500, 999}) {
         const int64_t frame = warp.frame_at(boundary);
-        CHECK(warp.source_frames()[static_cast<size_t>(frame)] >= static_cast<double>(boundary));
+        if (frame < warp.frames()) {  // a boundary near the end may lie behind the last frame
+            CHECK(warp.source_frames()[static_cast<size_t>(frame)] >=
+                  static_cast<double>(boundary));
+        }
         CHECK(warp.source_frames()[static_cast<size_t>(frame - 1)] < static_cast<double>(boundary));
     }
 }
