@@ -4,7 +4,8 @@
     python3 bench/mixture_peer.py --program build/release/bench/mixture_bench \
         [--frames 106000 --dimension 15 --clusters 1000 --threads 1] [--rows file.npy]
 
-Needs numpy and scikit-learn (Debian: python3-numpy python3-sklearn). Both fit spherical Gaussians
+Needs numpy and scikit-learn (Debian: python3-numpy python3-sklearn) and, to be fair to them,
+libopenblas0-pthread: without it numpy multiplies by the slow reference BLAS. Both fit spherical Gaussians
 from the same means, variances and weights. An iteration of scikit-learn is a quarter of the
 difference between fits of 5 and of 1, so that what it does before the first does not count; ours is
 the median of the iterations of one run. The two take turns; medians of the turns are printed, as
