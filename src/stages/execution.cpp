@@ -89,9 +89,9 @@ FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace) {
     return finished;
 }
 
-FinishedPlan carry_out(const RunPlan& plan, const Selection& selection, const Workspace& workspace,
-                       const Resources& resources, const Log& log, const StopToken& stop) {
-    FinishedPlan finished = find_finished(plan, workspace);
+FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
+                       const Workspace& workspace, const Resources& resources, const Log& log,
+                       const StopToken& stop) {
     require_room(plan, selection, finished, workspace);
     for (size_t i = 0; i < plan.work.size(); ++i) {
         const PlannedWork& work = plan.work[i];

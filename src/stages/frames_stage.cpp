@@ -1,6 +1,4 @@
 // frames: read → parse → kinematics → write, as a pipeline with a bounded number of takes in it.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <memory>

@@ -131,7 +131,7 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     enter(plan, run);
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, *run.workspace);
-    const FinishedPlan after = carry_out(plan, {.stages = request.only, .slice = {}},
+    const FinishedPlan after = carry_out(plan, before, {.stages = request.only, .slice = {}},
                                          *run.workspace, request.resources, run.log, stop);
     RunSummary summary = finish(run, plan, before, after, request.copy, meter);
     summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, survey_peak);
@@ -152,8 +152,9 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
     const RunPlan plan(survey_corpus(request.corpus, request.resources.threads, run.log, stop),
                        request.options);
     enter(plan, run);
-    const FinishedPlan finished = carry_out(plan, {.stages = {"frames"}, .slice = slice},
-                                            *run.workspace, request.resources, run.log, stop);
+    const FinishedPlan finished =
+        carry_out(plan, find_finished(plan, *run.workspace), {.stages = {"frames"}, .slice = slice},
+                  *run.workspace, request.resources, run.log, stop);
 
     const Catalog catalog = make_catalog(plan, finished, nullptr);
     std::set<std::string> mine;

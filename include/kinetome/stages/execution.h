@@ -23,11 +23,12 @@ struct Selection {
 /// Finished work by position in the plan; nothing where it was neither found nor selected.
 using FinishedPlan = std::vector<std::optional<FinishedWork>>;
 
-/// Makes or finds the selected work, finds the rest. Throws Interrupted between pieces of work,
-/// CreateError when the disk has too little room for what is to be made, and UsageError when
-/// selected work needs inputs that are neither finished nor selected.
-FinishedPlan carry_out(const RunPlan& plan, const Selection& selection, const Workspace& workspace,
-                       const Resources& resources, const Log& log, const StopToken& stop);
+/// Makes the selected work that `finished` (find_finished) lacks. Throws Interrupted between pieces
+/// of work, CreateError when the disk has too little room for what is to be made, and UsageError
+/// when selected work needs inputs that are neither finished nor selected.
+FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
+                       const Workspace& workspace, const Resources& resources, const Log& log,
+                       const StopToken& stop);
 
 /// Finds what is finished and makes nothing.
 FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace);
