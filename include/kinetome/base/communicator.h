@@ -1,0 +1,71 @@
+// The processes that carry out a run together: one, or the ranks of an MPI job, by the same calls
+// (design §6). Every rank makes the same calls in the same order, and each call is also where it
+// learns that another rank has failed or was asked to stop.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinetome/base/error.h"
+
+namespace kinetome {
+
+/// Thrown by every call of a rank's communicator once another rank has failed. what() names it.
+struct RankFailure : Error {
+    using Error::Error;
+};
+
+/// Calls are made by one thread of each rank, outside parallel regions.
+class Communicator {
+  public:
+    virtual ~Communicator() = default;
+
+    virtual int rank() const = 0;
+    virtual int size() const = 0;
+    /// Rank 0 alone creates files that are one for the run, publishes and speaks.
+    bool is_root() const { return rank() == 0; }
+
+    /// What every rank brought, in rank order, at every rank.
+    virtual std::vector<std::string> gather_to_all(std::string bytes) = 0;
+    /// The same at rank 0; nothing at the others.
+    virtual std::vector<std::string> gather(std::string bytes) = 0;
+    /// What rank 0 brought, at every rank; what others brought is ignored.
+    virtual std::string broadcast(std::string bytes) = 0;
+    /// Nobody goes on before all have come here.
+    void wait_for_all() { gather_to_all({}); }
+
+    /// Tells the others that this rank ends: their call in progress, or their next one, throws
+    /// RankFailure with that code and message. This rank makes no further call.
+    virtual void fail(ExitCode code, const std::string& message) noexcept = 0;
+};
+
+/// One process alone.
+class SerialCommunicator final : public Communicator {
+  public:
+    int rank() const override { return 0; }
+    int size() const override { return 1; }
+    std::vector<std::string> gather_to_all(std::string bytes) override {
+        return {std::move(bytes)};
+    }
+    std::vector<std::string> gather(std::string bytes) override { return {std::move(bytes)}; }
+    std::string broadcast(std::string bytes) override { return bytes; }
+    void fail(ExitCode, const std::string&) noexcept override {}
+};
+
+/// Who shares a piece of work: the threads of this process and, when `ranks` is set, the same
+/// number of threads at each other rank.
+struct Workers {
+    Workers(int thread_count, Communicator* communicator = nullptr)
+        : threads(thread_count), ranks(communicator) {}
+
+    int threads;
+    Communicator* ranks;
+
+    int rank() const { return ranks ? ranks->rank() : 0; }
+    int rank_count() const { return ranks ? ranks->size() : 1; }
+    bool is_root() const { return rank() == 0; }
+    /// This process without the others.
+    Workers alone() const { return {threads}; }
+};
+
+}  // namespace kinetome
