@@ -35,8 +35,9 @@ class Communicator {
     void wait_for_all() { gather_to_all({}); }
 
     /// Tells the others that this rank ends: their call in progress, or their next one, throws
-    /// RankFailure with that code and message. This rank makes no further call.
-    virtual void fail(ExitCode code, const std::string& message) noexcept = 0;
+    /// RankFailure with that code and message. This rank makes no further call. When several fail
+    /// at once, all hear of the lowest rank among them. Returns the code that was heard.
+    virtual ExitCode fail(ExitCode code, const std::string& message) noexcept = 0;
 };
 
 /// One process alone.
@@ -49,7 +50,7 @@ class SerialCommunicator final : public Communicator {
     }
     std::vector<std::string> gather(std::string bytes) override { return {std::move(bytes)}; }
     std::string broadcast(std::string bytes) override { return bytes; }
-    void fail(ExitCode, const std::string&) noexcept override {}
+    ExitCode fail(ExitCode code, const std::string&) noexcept override { return code; }
 };
 
 /// Who shares a piece of work: the threads of this process and, when `ranks` is set, the same
