@@ -14,8 +14,10 @@ Command ingest_command() {
                 app.add_option("CORPUS", request->corpus, "folder of takes")->required();
                 app.add_option("--store", request->store, "store to write to")->required();
                 app.add_option("--slice", *slice, "i/n: the i-th of n nearly equal parts");
+                app.add_flag("--join", request->join,
+                             "take part in the run that `kinetome plan --open` opened");
                 return [=](const Invocation& invocation) {
-                    request->options = flags->resolve();
+                    take_options(*flags, *request);
                     request->resources = invocation.resources();
                     std::optional<Slice> part;
                     if (!slice->empty()) part = parse_slice(*slice);

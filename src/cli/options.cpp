@@ -43,18 +43,47 @@ ReindexFlags::ReindexFlags(CLI::App& app) {
     }
 }
 
-ReindexOptions ReindexFlags::resolve() const {
-    ReindexOptions options = preset_ == "paper" ? paper_options() : ReindexOptions();
-    if (!config_.empty()) read_configuration(config_, options);
+ReindexFlags::Merged ReindexFlags::merge() const {
+    Merged merged;
+    ReindexOptions& options = merged.options;
+    if (preset_ == "paper") {
+        options = paper_options();
+        for (const OptionRow& row : option_rows(options)) merged.names.insert(row.name);
+    }
+    if (!config_.empty()) merged.names.merge(read_configuration(config_, options));
     for (OptionRow& row : option_rows(options)) {
         for (const auto& given : given_) {
-            if (given->name == row.name && given->flag->count()) row.set(given->text);
+            if (given->name != row.name || !given->flag->count()) continue;
+            row.set(given->text);
+            merged.names.insert(row.name);
         }
     }
     std::string& joint_map = options.frames.joint_map;  // `publish` may run in another folder
     if (!joint_map.empty()) joint_map = std::filesystem::absolute(joint_map).lexically_normal();
+    return merged;
+}
+
+ReindexOptions ReindexFlags::resolve() const {
+    ReindexOptions options = merge().options;
     check_options(options);
     return options;
+}
+
+std::map<std::string, std::string> ReindexFlags::given() const {
+    Merged merged = merge();
+    std::map<std::string, std::string> values;
+    for (const OptionRow& row : option_rows(merged.options)) {
+        if (merged.names.count(row.name)) values[row.name] = row.get();
+    }
+    return values;
+}
+
+void take_options(const ReindexFlags& flags, ReindexRequest& request) {
+    if (request.join) {
+        request.given_options = flags.given();
+    } else {
+        request.options = flags.resolve();
+    }
 }
 
 }  // namespace kinetome::cli

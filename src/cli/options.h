@@ -3,12 +3,15 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "kinetome/base/log.h"
 #include "kinetome/stages/options.h"
+#include "kinetome/stages/reindex.h"
 
 namespace kinetome::cli {
 
@@ -21,14 +24,23 @@ struct CommonOptions {
 
 void add_common_options(CLI::App& app, CommonOptions& options);
 
-/// Every row of option_rows as a flag, --preset and --config. Call resolve() after parsing: preset
-/// first, then the file, then the flags.
+/// Every row of option_rows as a flag, --preset and --config. After parsing: preset first, then the
+/// file, then the flags.
 class ReindexFlags {
   public:
     explicit ReindexFlags(CLI::App& app);
+    /// All options. Throws UsageError when they make no sense together.
     ReindexOptions resolve() const;
+    /// Name and value of those that were given.
+    std::map<std::string, std::string> given() const;
 
   private:
+    struct Merged {
+        ReindexOptions options;
+        std::set<std::string> names;  ///< of the options that were given
+    };
+    Merged merge() const;
+
     struct Given {
         std::string name;
         std::string text;
@@ -38,5 +50,8 @@ class ReindexFlags {
     std::filesystem::path config_;
     std::vector<std::shared_ptr<Given>> given_;
 };
+
+/// The options of a run: all of them, or those that the run to be joined must agree with.
+void take_options(const ReindexFlags& flags, ReindexRequest& request);
 
 }  // namespace kinetome::cli

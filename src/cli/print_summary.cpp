@@ -45,6 +45,10 @@ void print_summary(const RunSummary& summary) {
         published.catalog.indexed(), published.added, published.changed, published.reused,
         published.catalog.quarantined(), published.catalog.removed.size(),
         published.catalog.frames());
+    if (published.generation.empty()) {
+        fmt::print("not published: `kinetome publish STORE` makes it visible\n");
+        return;
+    }
     fmt::print("generation {}{}\n", published.generation,
                published.up_to_date ? " (up to date: nothing changed)" : "");
 }

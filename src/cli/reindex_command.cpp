@@ -17,8 +17,12 @@ Command reindex_command() {
                 ->delimiter(',');
             app.add_flag("--copy", request->copy,
                          "copy unchanged files into the new generation instead of linking them");
+            app.add_flag("--join", request->join,
+                         "go on with the run that `kinetome plan --open` opened");
+            app.add_flag("!--no-publish", request->publish,
+                         "leave the publication to `kinetome publish`");
             return [=](const Invocation& invocation) {
-                request->options = flags->resolve();
+                take_options(*flags, *request);
                 request->resources = invocation.resources();
                 request->only = {only->begin(), only->end()};
                 const RunSummary summary = reindex(*request, invocation.log, invocation.stop);

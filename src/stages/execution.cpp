@@ -23,26 +23,6 @@ bool is_selected(const RunPlan& plan, const PlannedWork& work, const Selection& 
     return std::find(mine.begin(), mine.end(), position) != mine.end();
 }
 
-/// Refuses early what would fill the disk half-way.
-void require_room(const RunPlan& plan, const Selection& selection, const FinishedPlan& finished,
-                  const Workspace& workspace) {
-    uint64_t frames = 0;
-    for (size_t i = 0; i < plan.work.size(); ++i) {
-        const PlannedWork& work = plan.work[i];
-        if (work.shard && !finished[i] && is_selected(plan, work, selection)) {
-            frames += static_cast<uint64_t>(work.shard->claimed_frames);
-        }
-    }
-    const uint64_t needed = frames * bytes_per_frame_and_stage;
-    const uint64_t free = free_bytes(workspace.folder());
-    if (needed > free) {
-        throw CreateError(fmt::format(
-            "{}: this run needs about {}, but only {} are free: free "
-            "space, or choose a store on another disk",
-            workspace.store().path().string(), describe_bytes(needed), describe_bytes(free)));
-    }
-}
-
 StageTask task_of(const RunPlan& plan, const PlannedWork& work, const FinishedPlan& finished,
                   const Workspace& workspace) {
     StageTask task;
@@ -81,10 +61,32 @@ FinishedWork make(const RunPlan& plan, const PlannedWork& work, const StageTask&
 
 }  // namespace
 
-FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace) {
+void require_room(const RunPlan& plan, const FinishedPlan& finished, const Selection& selection,
+                  const Workspace& workspace) {
+    uint64_t frames = 0;
+    for (size_t i = 0; i < plan.work.size(); ++i) {
+        const PlannedWork& work = plan.work[i];
+        if (work.shard && !finished[i] && is_selected(plan, work, selection)) {
+            frames += static_cast<uint64_t>(work.shard->claimed_frames);
+        }
+    }
+    const uint64_t needed = frames * bytes_per_frame_and_stage;
+    const uint64_t free = free_bytes(workspace.folder());
+    if (needed > free) {
+        throw CreateError(fmt::format(
+            "{}: this run needs about {}, but only {} are free: free "
+            "space, or choose a store on another disk",
+            workspace.store().path().string(), describe_bytes(needed), describe_bytes(free)));
+    }
+}
+
+FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,
+                           const Selection& selection) {
     FinishedPlan finished;
     for (const PlannedWork& work : plan.work) {
-        finished.push_back(workspace.find(work.file_name, work.key));
+        finished.push_back(is_selected(plan, work, selection)
+                               ? workspace.find(work.file_name, work.key)
+                               : std::nullopt);
     }
     return finished;
 }
@@ -92,7 +94,7 @@ FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace) {
 FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
                        const Workspace& workspace, const Resources& resources, const Log& log,
                        const StopToken& stop) {
-    require_room(plan, selection, finished, workspace);
+    require_room(plan, finished, selection, workspace);
     for (size_t i = 0; i < plan.work.size(); ++i) {
         const PlannedWork& work = plan.work[i];
         if (!is_selected(plan, work, selection)) continue;

@@ -1,4 +1,6 @@
 // frames: read → parse → kinematics → write, as a pipeline with a bounded number of takes in it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -25,12 +27,12 @@ constexpr uint64_t working_bytes_per_source_byte = 4;
 
 /// The survey could read the file, so a failure now is the disk's, not the take's: it must not be
 /// remembered as the take's under the key of its content.
-std::string read_again(const std::filesystem::path& path) {
+std::string read_again(const Survey& survey, const std::string& source) {
     try {
-        return read_source_file(path);
+        return read_source_file(survey.corpus / source);
     } catch (const InputError& error) {
-        throw StoreError(std::string(error.what()) +
-                         "; it could be read when the run began: run the same command again");
+        throw StoreError(fmt::format("{}; it could be read when the run began: {}", error.what(),
+                                     survey.remedy_for_change));
     }
 }
 
@@ -65,7 +67,7 @@ class SkeletonFiles {
   private:
     void load(const std::string& source, Entry& entry) {
         try {
-            const std::string bytes = read_again(context_.survey.corpus / source);
+            const std::string bytes = read_again(context_.survey, source);
             entry.content = digest_of(bytes);
             const std::string path = path_for_message(source);
             entry.skeleton = with_roles(parse_asf(bytes, path), path);
@@ -95,17 +97,18 @@ std::vector<std::string> capabilities_of(const Skeleton& skeleton) {
     return capabilities;
 }
 
-void check_unchanged(const Take& take, const std::string& bytes, const Digest& skeleton) {
+void check_unchanged(const Survey& survey, const Take& take, const std::string& bytes,
+                     const Digest& skeleton) {
     if (content_digest(bytes, skeleton) == take.content) return;
-    throw StoreError(path_for_message(take.source) +
-                     ": changed while it was being read; run the same command again");
+    throw StoreError(fmt::format("{}: changed since the run began: {}",
+                                 path_for_message(take.source), survey.remedy_for_change));
 }
 
 void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& passenger) {
     const Take& take = *passenger.take;
     passenger.outcome.clip = take.name;
     try {
-        const std::string bytes = read_again(context.survey.corpus / take.source);
+        const std::string bytes = read_again(context.survey, take.source);
         const TakeFormat& format =
             *find_take_format(std::filesystem::path(take.source).extension().string());
         TakeSource source{.bytes = bytes,
@@ -118,7 +121,7 @@ void parse(const StageContext& context, SkeletonFiles& skeletons, Passenger& pas
             entry = &skeletons.get(take.skeleton_source);
             skeleton_content = entry->content;
         }
-        check_unchanged(take, bytes, skeleton_content);
+        check_unchanged(context.survey, take, bytes, skeleton_content);
         if (entry) {
             if (!entry->skeleton) throw InputError(entry->error);
             source.skeleton = entry->skeleton;

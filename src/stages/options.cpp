@@ -193,8 +193,8 @@ ReindexOptions paper_options() {
     return options;
 }
 
-void parse_configuration(std::string_view text, const std::string& origin,
-                         ReindexOptions& options) {
+std::set<std::string> parse_configuration(std::string_view text, const std::string& origin,
+                                          ReindexOptions& options) {
     toml::table table;
     try {
         table = toml::parse(text, origin);
@@ -203,6 +203,7 @@ void parse_configuration(std::string_view text, const std::string& origin,
             fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
     }
     auto rows = option_rows(options);
+    std::set<std::string> names;
     for (const auto& [key, node] : table) {
         const std::string name(key.str());
         const auto row = std::find_if(rows.begin(), rows.end(),
@@ -217,14 +218,17 @@ void parse_configuration(std::string_view text, const std::string& origin,
             throw UsageError(
                 fmt::format("{}:{}: {}", origin, node.source().begin.line, error.what()));
         }
+        names.insert(name);
     }
+    return names;
 }
 
-void read_configuration(const std::filesystem::path& file, ReindexOptions& options) {
+std::set<std::string> read_configuration(const std::filesystem::path& file,
+                                         ReindexOptions& options) {
     if (!std::filesystem::is_regular_file(file)) {
         throw UsageError(file.string() + ": no such configuration file");
     }
-    parse_configuration(read_file(file), file.string(), options);
+    return parse_configuration(read_file(file), file.string(), options);
 }
 
 std::string write_configuration(const ReindexOptions& options) {

@@ -27,6 +27,15 @@ std::set<std::string> complete_stages(const RunPlan& plan, const FinishedPlan& f
     return complete;
 }
 
+/// Finished work of some stages; nothing in the places of others.
+FinishedPlan work_of(const std::set<std::string>& stages, const RunPlan& plan,
+                     FinishedPlan finished) {
+    for (size_t i = 0; i < finished.size(); ++i) {
+        if (!stages.count(plan.work[i].stage->name)) finished[i].reset();
+    }
+    return finished;
+}
+
 void enter(const ClipOutcome& outcome, const std::string& stage, CatalogClip& clip) {
     if (!outcome.quarantined.empty()) clip.quarantined = outcome.quarantined;
     if (!outcome.skipped.empty()) clip.skipped[stage] = outcome.skipped;
@@ -148,38 +157,40 @@ Catalog make_catalog(const RunPlan& plan, const FinishedPlan& finished, const Ge
     return catalog;
 }
 
-Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
-                         Workspace& workspace, bool copy, const std::filesystem::path& log_file,
-                         const Log& log) {
+Publication prepare_publication(const RunPlan& plan, const FinishedPlan& all_finished,
+                                const Generation* last, const Log& log) {
     const std::set<std::string> complete = complete_stages(plan, all_finished);
     if (!complete.count("frames")) {
         throw Error(
             ExitCode::nothing_usable,
             "not published: frames are incomplete; run the missing ingest slices, or reindex");
     }
-    FinishedPlan finished = all_finished;
-    Publication publication;
-    publication.ledger.version = KINETOME_VERSION;
-    std::vector<StoreDirectory::File> files;
-    for (size_t i = 0; i < finished.size(); ++i) {
-        if (!complete.count(plan.work[i].stage->name)) finished[i].reset();
-        if (!finished[i]) continue;
-        publication.ledger.receipts.push_back(finished[i]->receipt);
-        files.push_back({finished[i]->receipt.file.file_name, finished[i]->path});
-    }
     for (const StageRow& stage : stage_table()) {
         if (!complete.count(stage.name)) log.warning("{}: not complete, left out", stage.name);
     }
-    publication.catalog = make_catalog(plan, finished, workspace.last());
+    const FinishedPlan finished = work_of(complete, plan, all_finished);
+    Publication publication;
+    publication.ledger.version = KINETOME_VERSION;
+    for (const auto& work : finished) {
+        if (work) publication.ledger.receipts.push_back(work->receipt);
+    }
+    publication.catalog = make_catalog(plan, finished, last);
     if (publication.catalog.indexed() == 0) {
         throw Error(ExitCode::nothing_usable,
                     fmt::format("none of {} takes could be indexed; the first reason: {}",
                                 publication.catalog.clips.size(),
                                 publication.catalog.clips.front().quarantined));
     }
-    count_clips(workspace.last(), publication);
+    count_clips(last, publication);
     check_laws(plan, publication);
+    return publication;
+}
 
+Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
+                         Workspace& workspace, bool copy, const std::filesystem::path& log_file,
+                         const Log& log) {
+    Publication publication = prepare_publication(plan, all_finished, workspace.last(), log);
+    const FinishedPlan finished = work_of(complete_stages(plan, all_finished), plan, all_finished);
     const std::string configuration = write_configuration(plan.options);
     if (is_up_to_date(workspace.last(), publication, finished, configuration)) {
         publication.up_to_date = true;
@@ -193,6 +204,10 @@ Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
         {"log.txt", file_text(log_file)}};
     for (const auto& [name, text] : texts) publication.ledger.texts[name] = digest_of(text);
     texts["ledger.json"] = write_ledger(publication.ledger);
+    std::vector<StoreDirectory::File> files;
+    for (const auto& work : finished) {
+        if (work) files.push_back({work->receipt.file.file_name, work->path});
+    }
     StoreDirectory store = workspace.store();
     publication.generation = store.publish(files, texts, copy);
     log.info(

@@ -10,39 +10,12 @@
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/run/meter.h"
+#include "run_in_progress.h"
 
 namespace kinetome {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A store with its last generation and the work in progress. `log` also writes to the run's file.
-struct OpenRun {
-    OpenRun(const StoreDirectory& directory, const Log& terminal)
-        : store(directory), log(terminal) {
-        if (const auto id = store.current()) open_last(*id);
-        workspace.emplace(store, last ? &*last : nullptr, verified);
-        log.add_file(log_file());
-    }
-    fs::path log_file() const { return workspace->folder() / "log.txt"; }
-    fs::path record() const { return workspace->folder() / "run.json"; }
-
-    /// A damaged generation stays current until the run has made a whole one.
-    void open_last(const std::string& id) {
-        try {
-            last.emplace(store, id, verified);
-        } catch (const DamagedError& error) {
-            log.warning("generation {} cannot be built on: {}; everything is made again", id,
-                        error.what());
-        }
-    }
-
-    StoreDirectory store;
-    VerifiedFiles verified;
-    std::optional<Generation> last;
-    std::optional<Workspace> workspace;
-    Log log;
-};
 
 /// oneTBB's share of the one thread count; OpenMP regions are given theirs explicitly.
 tbb::global_control limit_threads(const Resources& resources) {
@@ -63,13 +36,30 @@ void require_folder(const fs::path& corpus) {
                                                       error ? error.message() : "no such folder"));
 }
 
-/// Tells the plan, and leaves the record that `publish` starts from.
-void enter(const RunPlan& plan, const OpenRun& run) {
-    run.log.info("{}: {} takes claim {} frames; {} shards of about {} frames",
-                 plan.survey.corpus.string(), plan.survey.takes.size(),
-                 plan.survey.claimed_frames(), plan.shards.size(),
-                 plan.options.frames.shard_frames);
-    write_file_atomically(run.record(), write_run_record(plan.survey, plan.options));
+/// A joined run has its store already, and a mistyped name shall not make one.
+StoreDirectory open_store(const ReindexRequest& request) {
+    return request.join ? StoreDirectory::open(request.store)
+                        : StoreDirectory::open_or_create(request.store);
+}
+
+/// What the run is for, nothing when that is still to be surveyed.
+std::optional<RunRecord> find_opened(const ReindexRequest& request, const StoreDirectory& store) {
+    return request.join ? std::optional(joined_record(request, store)) : std::nullopt;
+}
+
+/// `slice` as RunInProgress::enter has it.
+RunRecord survey_and_enter(const ReindexRequest& request, RunInProgress& run,
+                           const std::string& slice, const StopToken& stop) {
+    RunRecord record{survey_corpus(request.corpus, request.resources.threads, run.log(), stop),
+                     request.options};
+    run.enter(record, slice);
+    return record;
+}
+
+void tell(const RunPlan& plan, const Log& log) {
+    log.info("{}: {} takes claim {} frames; {} shards of about {} frames",
+             plan.survey.corpus.string(), plan.survey.takes.size(), plan.survey.claimed_frames(),
+             plan.shards.size(), plan.options.frames.shard_frames);
 }
 
 std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& before,
@@ -97,22 +87,66 @@ std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& bef
 }
 
 /// Publishes, then forgets the run in progress, unless it holds work of stages that were left out.
-RunSummary finish(OpenRun& run, const RunPlan& plan, const FinishedPlan& before,
-                  const FinishedPlan& after, bool copy, const Meter& meter) {
+Publication publish_and_forget(RunInProgress& run, const RunPlan& plan,
+                               const FinishedPlan& finished, bool copy) {
+    Publication publication =
+        publish_plan(plan, finished, run.workspace(), copy, run.log_file(), run.log());
+    const bool all_published = std::all_of(finished.begin(), finished.end(),
+                                           [](const auto& work) { return work.has_value(); });
+    if (all_published) run.workspace().remove();
+    return publication;
+}
+
+RunSummary sum_up(Publication publication, const RunPlan& plan, const FinishedPlan& before,
+                  const FinishedPlan& after, const Meter& meter) {
     RunSummary summary;
-    summary.publication = publish_plan(plan, after, *run.workspace, copy, run.log_file(), run.log);
+    summary.publication = std::move(publication);
     summary.stages = summarise(plan, before, after);
     summary.cost = meter.cost();
     for (const StageSummary& stage : summary.stages) {
         summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, stage.cost.peak_bytes);
     }
-    const bool all_published =
-        std::all_of(after.begin(), after.end(), [](const auto& work) { return work.has_value(); });
-    if (all_published) run.workspace->remove();
+    return summary;
+}
+
+/// What a slice, or a run without slices, read.
+IngestSummary sum_up_takes(const RunPlan& plan, const FinishedPlan& finished,
+                           const std::optional<Slice>& slice) {
+    std::set<std::string> mine;
+    for (const size_t i : shards_of_slice(plan.shards, slice.value_or(Slice{}))) {
+        mine.insert(plan.shards[i].cut);
+    }
+    IngestSummary summary;
+    for (const CatalogClip& clip : make_catalog(plan, finished, nullptr).clips) {
+        if (!mine.count(clip.shard)) continue;
+        summary.frames += clip.frames;
+        ++(clip.indexed() ? summary.indexed : summary.quarantined);
+        if (!clip.indexed()) summary.reasons.push_back(clip.quarantined);
+    }
     return summary;
 }
 
 }  // namespace
+
+RunRecord open_run(const ReindexRequest& request, const Log& terminal, const StopToken& stop) {
+    const auto limit = limit_threads(request.resources);
+    announce(request.resources, terminal);
+    require_folder(request.corpus);
+    StoreDirectory store = StoreDirectory::open_or_create(request.store);
+    const StoreLock lock = store.lock_writer();
+    RunInProgress run(store, terminal);
+    run.workspace().remove_leftovers();
+
+    // Its parts may be started in other folders.
+    const fs::path corpus = fs::absolute(request.corpus);
+    RunRecord record{survey_corpus(corpus, request.resources.threads, run.log(), stop),
+                     request.options};
+    const RunPlan plan(record.survey, record.options);
+    tell(plan, run.log());
+    require_room(plan, find_finished(plan, run.workspace()), {}, run.workspace());
+    run.enter(record, "");
+    return record;
+}
 
 RunSummary reindex(const ReindexRequest& request, const Log& terminal, const StopToken& stop) {
     const Meter meter;
@@ -121,19 +155,23 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     for (const std::string& stage : request.only) stage_named(stage);
     require_folder(request.corpus);
 
-    StoreDirectory store = StoreDirectory::open_or_create(request.store);
+    StoreDirectory store = open_store(request);
     const StoreLock lock = store.lock_writer();
-    OpenRun run(store, terminal);
-    run.workspace->remove_leftovers();
+    const auto opened = find_opened(request, store);
+    RunInProgress run(store, terminal);
+    run.workspace().remove_leftovers();
 
-    const RunPlan plan(survey_corpus(request.corpus, request.resources.threads, run.log, stop),
-                       request.options);
-    enter(plan, run);
+    const RunRecord record = opened ? *opened : survey_and_enter(request, run, "", stop);
+    const RunPlan plan(record.survey, record.options);
+    tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
-    const FinishedPlan before = find_finished(plan, *run.workspace);
+    const FinishedPlan before = find_finished(plan, run.workspace());
     const FinishedPlan after = carry_out(plan, before, {.stages = request.only, .slice = {}},
-                                         *run.workspace, request.resources, run.log, stop);
-    RunSummary summary = finish(run, plan, before, after, request.copy, meter);
+                                         run.workspace(), request.resources, run.log(), stop);
+    Publication publication = request.publish
+                                  ? publish_and_forget(run, plan, after, request.copy)
+                                  : prepare_publication(plan, after, run.last(), run.log());
+    RunSummary summary = sum_up(std::move(publication), plan, before, after, meter);
     summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, survey_peak);
     return summary;
 }
@@ -143,35 +181,19 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
     const auto limit = limit_threads(request.resources);
     announce(request.resources, terminal);
     require_folder(request.corpus);
-    StoreDirectory store = StoreDirectory::open_or_create(request.store);
-    const StoreLock lock =
-        slice ? store.lock_slice(fmt::format("slice-{}-of-{}", slice->index, slice->count))
-              : store.lock_writer();
-    OpenRun run(store, terminal);
+    StoreDirectory store = open_store(request);
+    const std::string name = slice ? fmt::format("slice-{}-of-{}", slice->index, slice->count) : "";
+    const StoreLock lock = slice ? store.lock_slice(name) : store.lock_writer();
+    const auto opened = find_opened(request, store);
+    RunInProgress run(store, terminal);
 
-    const RunPlan plan(survey_corpus(request.corpus, request.resources.threads, run.log, stop),
-                       request.options);
-    enter(plan, run);
-    const FinishedPlan finished =
-        carry_out(plan, find_finished(plan, *run.workspace), {.stages = {"frames"}, .slice = slice},
-                  *run.workspace, request.resources, run.log, stop);
-
-    const Catalog catalog = make_catalog(plan, finished, nullptr);
-    std::set<std::string> mine;
-    for (size_t i = 0; i < plan.shards.size(); ++i) {
-        if (!slice) mine.insert(plan.shards[i].cut);
-    }
-    if (slice) {
-        for (const size_t i : shards_of_slice(plan.shards, *slice)) mine.insert(plan.shards[i].cut);
-    }
-    IngestSummary summary;
-    for (const CatalogClip& clip : catalog.clips) {
-        if (!mine.count(clip.shard)) continue;
-        summary.frames += clip.frames;
-        ++(clip.indexed() ? summary.indexed : summary.quarantined);
-        if (!clip.indexed()) summary.reasons.push_back(clip.quarantined);
-    }
-    return summary;
+    const RunRecord record = opened ? *opened : survey_and_enter(request, run, name, stop);
+    const RunPlan plan(record.survey, record.options);
+    tell(plan, run.log());
+    const Selection mine{.stages = {"frames"}, .slice = slice};
+    const FinishedPlan finished = carry_out(plan, find_finished(plan, run.workspace(), mine), mine,
+                                            run.workspace(), request.resources, run.log(), stop);
+    return sum_up_takes(plan, finished, slice);
 }
 
 RunSummary publish(const fs::path& path, const Resources& resources, bool copy,
@@ -180,16 +202,16 @@ RunSummary publish(const fs::path& path, const Resources& resources, bool copy,
     const auto limit = limit_threads(resources);
     StoreDirectory store = StoreDirectory::open(path);
     const StoreLock lock = store.lock_writer();
-    OpenRun run(store, terminal);
-    if (!fs::exists(run.record())) {
-        run.workspace->remove();
+    RunInProgress run(store, terminal);
+    if (!fs::exists(run.record_file())) {
+        run.workspace().remove();
         throw Error(ExitCode::nothing_usable,
                     path.string() + ": no run in progress: `kinetome ingest` opens one");
     }
-    RunRecord record = parse_run_record(read_file(run.record()), run.record());
+    RunRecord record = parse_run_record(read_file(run.record_file()), run.record_file());
     const RunPlan plan(std::move(record.survey), record.options);
-    const FinishedPlan finished = find_finished(plan, *run.workspace);
-    return finish(run, plan, finished, finished, copy, meter);
+    const FinishedPlan finished = find_finished(plan, run.workspace());
+    return sum_up(publish_and_forget(run, plan, finished, copy), plan, finished, finished, meter);
 }
 
 }  // namespace kinetome

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 
 #include "generation_id.h"
 #include "kinetome/base/error.h"
@@ -196,6 +198,27 @@ StoreLock StoreDirectory::lock_slice(const std::string& name) {
     return lock;
 }
 
+std::optional<std::string> StoreDirectory::other_slice_at_work(const std::string& own) const {
+    const fs::path slices = locks_folder() / "slices";
+    for (const std::string& name : names_in(slices)) {
+        if (name == own) continue;
+        if (const auto holder = live_holder(slices / name)) return holder;
+    }
+    return std::nullopt;
+}
+
+StoreLock StoreDirectory::lock_record() {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    for (;;) {
+        try {
+            return StoreLock::take(locks_folder() / "record");
+        } catch (const CreateError&) {
+            if (std::chrono::steady_clock::now() > give_up) throw;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
 StoreLock StoreDirectory::lease(const std::string& generation) const {
     const fs::path leases = locks_folder() / "leases";
     StoreLock lease;
@@ -254,7 +277,8 @@ void StoreDirectory::remove_leftovers() const {
     }
     for (const std::string& name : names_in(locks_folder())) {
         // Of writers that were killed while they took the lock over or removed a generation.
-        if (name.starts_with("writer.") || name.starts_with("removal."))
+        if (name.starts_with("writer.") || name.starts_with("removal.") ||
+            name.starts_with("record."))
             remove_tree(locks_folder() / name);
     }
     remove_stale_leases();

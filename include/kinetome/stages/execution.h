@@ -23,6 +23,10 @@ struct Selection {
 /// Finished work by position in the plan; nothing where it was neither found nor selected.
 using FinishedPlan = std::vector<std::optional<FinishedWork>>;
 
+/// Throws CreateError when the disk has too little room for selected work that is not finished.
+void require_room(const RunPlan& plan, const FinishedPlan& finished, const Selection& selection,
+                  const Workspace& workspace);
+
 /// Makes the selected work that `finished` (find_finished) lacks. Throws Interrupted between pieces
 /// of work, CreateError when the disk has too little room for what is to be made, and UsageError
 /// when selected work needs inputs that are neither finished nor selected.
@@ -30,7 +34,8 @@ FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selecti
                        const Workspace& workspace, const Resources& resources, const Log& log,
                        const StopToken& stop);
 
-/// Finds what is finished and makes nothing.
-FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace);
+/// Finds what is finished of the selected work (each file is hashed), and makes nothing.
+FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,
+                           const Selection& selection = {});
 
 }  // namespace kinetome

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,14 +66,16 @@ struct OptionRow {
 
 std::vector<OptionRow> option_rows(ReindexOptions& options);
 
-/// Reads a configuration file over `options`. Throws UsageError naming file and line for a syntax
-/// error, an unknown name or a bad value.
-void read_configuration(const std::filesystem::path& file, ReindexOptions& options);
+/// Reads a configuration file over `options`; returns the names it set. Throws UsageError naming
+/// file and line for a syntax error, an unknown name or a bad value.
+std::set<std::string> read_configuration(const std::filesystem::path& file,
+                                         ReindexOptions& options);
 
 /// All options as a configuration file, defaults written out, with their help as comments.
 std::string write_configuration(const ReindexOptions& options);
 /// The text form back; `origin` is named in errors.
-void parse_configuration(std::string_view toml, const std::string& origin, ReindexOptions& options);
+std::set<std::string> parse_configuration(std::string_view toml, const std::string& origin,
+                                          ReindexOptions& options);
 
 /// Throws UsageError when values contradict each other or are out of range.
 void check_options(const ReindexOptions& options);

@@ -12,7 +12,8 @@ namespace kinetome {
 
 /// What was published.
 struct Publication {
-    std::string generation;   ///< id of the new generation, or of the current one when up to date
+    std::string generation;   ///< id of the new generation, or of the current one when up to date;
+                              ///< "" while it is not published
     bool up_to_date = false;  ///< nothing changed: no new generation was made
     Catalog catalog;
     Ledger ledger;
@@ -24,10 +25,14 @@ struct Publication {
 /// The catalog that a plan's finished frames make.
 Catalog make_catalog(const RunPlan& plan, const FinishedPlan& finished, const Generation* last);
 
-/// Publishes every stage whose work is complete and whose inputs are published too; a stage that is
-/// not is left out, with a line in the log. `log_file` becomes log.txt of the generation. Throws
+/// What publish_plan would publish: every stage whose work is complete and whose inputs are
+/// published too; a stage that is not is left out, with a line in the log. Throws
 /// Error(nothing_usable) when frames are incomplete or no clip was indexed, and Error(internal)
 /// when a publish law does not hold.
+Publication prepare_publication(const RunPlan& plan, const FinishedPlan& finished,
+                                const Generation* last, const Log& log);
+
+/// Prepares and publishes. `log_file` becomes log.txt of the generation.
 Publication publish_plan(const RunPlan& plan, const FinishedPlan& finished, Workspace& workspace,
                          bool copy, const std::filesystem::path& log_file, const Log& log);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +13,7 @@
 #include "kinetome/base/stop.h"
 #include "kinetome/run/shard_plan.h"
 #include "kinetome/stages/options.h"
+#include "kinetome/stages/plan.h"
 #include "kinetome/stages/publication.h"
 
 namespace kinetome {
@@ -23,6 +25,11 @@ struct ReindexRequest {
     Resources resources;
     std::set<std::string> only;  ///< stages; empty: all
     bool copy = false;           ///< copy unchanged files instead of linking them
+    bool publish = true;         ///< else everything but publishing
+    /// Take part in the run that open_run opened: takes and options are its, not surveyed again and
+    /// not those of `options`.
+    bool join = false;
+    std::map<std::string, std::string> given_options;  ///< what the joined run must agree with
 };
 
 /// One stage of a run, for the summary.
@@ -40,7 +47,12 @@ struct RunSummary {
     Cost cost;  ///< of the whole run
 };
 
-/// Everything, incrementally, and publishes.
+/// Surveys the corpus, checks that the disk has room, and leaves the record that others join:
+/// `ingest` in slices, `reindex`, `publish`. Finished work of an earlier run stays usable.
+RunRecord open_run(const ReindexRequest& request, const Log& log, const StopToken& stop);
+
+/// Everything, incrementally, and publishes. A joined run throws Error(nothing_usable) when none is
+/// open, and UsageError when the request is not what it was opened for.
 RunSummary reindex(const ReindexRequest& request, const Log& log, const StopToken& stop);
 
 struct IngestSummary {
@@ -50,7 +62,8 @@ struct IngestSummary {
     std::vector<std::string> reasons;  ///< of the quarantined takes
 };
 
-/// The frames stage alone, of one slice or of all, without publishing.
+/// The frames stage alone, of one slice or of all, without publishing. Slices that are not joined
+/// throw CreateError rather than change the record of a run that other slices are at work for.
 IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& slice,
                      const Log& log, const StopToken& stop);
 

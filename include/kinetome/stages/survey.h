@@ -25,11 +25,15 @@ struct Take {
     uint64_t bytes = 0;
     std::string
         quarantined;  ///< why it cannot be read at all: no skeleton, duplicate, no permission
+
+    bool operator==(const Take&) const = default;
 };
 
 struct Survey {
     std::filesystem::path corpus;
     std::vector<Take> takes;  ///< sorted by name; the order of everything that follows
+    /// What to do about a take that is no longer what it was when it was surveyed.
+    std::string remedy_for_change = "run the same command again";
 
     int64_t claimed_frames() const;
     /// Extents for planning shards and groups (rows = 0).

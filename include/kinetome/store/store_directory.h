@@ -5,8 +5,8 @@
 //   STORE/current                symbolic link to the current generation, switched last
 //   STORE/generations/<id>/      files shared with other generations by hard links
 //   STORE/scratch/               work in progress
-//   STORE/locks/                 writer, slices/<name>, leases/<generation>.<nonce>, removal.<id>
-//   STORE/labels.csv             the user's own; never touched here
+//   STORE/locks/                 writer, record, slices/<name>, leases/<generation>.<nonce>,
+//   removal.<id> STORE/labels.csv             the user's own; never touched here
 #pragma once
 
 #include <cstdint>
@@ -46,6 +46,11 @@ class StoreDirectory {
     StoreLock lock_writer();
     /// A share of the run in progress (`slice-2-of-8`): excludes lock_writer and the same name.
     StoreLock lock_slice(const std::string& name);
+    /// Who is at work for a slice other than `own`, in words; nothing when nobody is.
+    std::optional<std::string> other_slice_at_work(const std::string& own) const;
+    /// Held for the moment in which a slice looks at the record of the run and replaces it. Waits
+    /// for the moments of others; throws CreateError when one takes more than a minute.
+    StoreLock lock_record();
     /// A reader's lease on a generation, honoured by remove_old. Not held where none can be made (a
     /// store one may only read). Throws StoreError when the generation is gone.
     StoreLock lease(const std::string& generation) const;
