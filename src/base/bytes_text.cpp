@@ -6,7 +6,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/resources.h"
-#include "whole_number.h"
+#include "kinetome/base/whole_number.h"
 #include "wide_integer.h"
 
 namespace kinetome {

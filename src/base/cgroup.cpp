@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "whole_number.h"
+#include "kinetome/base/whole_number.h"
 
 namespace kinetome {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "cgroup.h"
 #include "kinetome/base/error.h"
-#include "whole_number.h"
+#include "kinetome/base/whole_number.h"
 
 namespace kinetome {
 namespace {

@@ -58,6 +58,23 @@ std::optional<ProcessStatus> status_of(pid_t process) {
     return fields ? std::optional(status) : std::nullopt;
 }
 
+nlohmann::ordered_json write_job(const SlurmJob& job) {
+    return {
+        {"cluster", job.cluster}, {"job", job.id}, {"restarts", job.restarts}, {"user", job.user}};
+}
+
+SlurmJob parse_job(const nlohmann::json& json) {
+    return {.cluster = json.at("cluster"),
+            .id = json.at("job"),
+            .restarts = json.at("restarts"),
+            .user = json.at("user")};
+}
+
+bool is_out_of_sight(const LockHolder& holder, const LockHolder& here) {
+    return holder.host != here.host ||
+           (holder.boot == here.boot && holder.pid_namespace != here.pid_namespace);
+}
+
 }  // namespace
 
 std::string random_nonce() {
@@ -74,30 +91,35 @@ LockHolder this_process() {
             .process = ::getpid(),
             .started = status ? status->started : 0,
             .since = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
-            .nonce = random_nonce()};
+            .nonce = random_nonce(),
+            .job = this_slurm_job()};
 }
 
 std::string write_holder(const LockHolder& holder) {
-    const nlohmann::ordered_json json{{"host", holder.host},
-                                      {"boot", holder.boot},
-                                      {"pid_namespace", holder.pid_namespace},
-                                      {"process", holder.process},
-                                      {"started", holder.started},
-                                      {"since", holder.since},
-                                      {"nonce", holder.nonce}};
+    nlohmann::ordered_json json{{"host", holder.host},
+                                {"boot", holder.boot},
+                                {"pid_namespace", holder.pid_namespace},
+                                {"process", holder.process},
+                                {"started", holder.started},
+                                {"since", holder.since},
+                                {"nonce", holder.nonce}};
+    if (holder.job) json["slurm"] = write_job(*holder.job);
     return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 std::optional<LockHolder> parse_holder(std::string_view text) {
     try {
         const auto json = nlohmann::json::parse(text);
-        return LockHolder{.host = json.at("host"),
+        LockHolder holder{.host = json.at("host"),
                           .boot = json.at("boot"),
                           .pid_namespace = json.at("pid_namespace"),
                           .process = json.at("process"),
                           .started = json.at("started"),
                           .since = json.at("since"),
-                          .nonce = json.at("nonce")};
+                          .nonce = json.at("nonce"),
+                          .job = {}};
+        if (json.contains("slurm")) holder.job = parse_job(json.at("slurm"));
+        return holder;
     } catch (const nlohmann::json::exception&) {
         return std::nullopt;
     }
@@ -105,9 +127,10 @@ std::optional<LockHolder> parse_holder(std::string_view text) {
 
 bool is_gone(const LockHolder& holder) {
     const LockHolder here = this_process();
-    if (holder.host != here.host) return false;
+    if (is_out_of_sight(holder, here)) {
+        return holder.job && here.job && surely_over(*holder.job, *here.job);
+    }
     if (holder.boot != here.boot) return true;
-    if (holder.pid_namespace != here.pid_namespace) return false;
     if (::kill(holder.process, 0) != 0 && errno == ESRCH) return true;
     const auto status = status_of(holder.process);
     if (!status) return false;  // exists, but hides from this user
@@ -116,8 +139,9 @@ bool is_gone(const LockHolder& holder) {
 }
 
 std::string describe(const LockHolder& holder) {
-    return fmt::format("process {} on {} since {}", holder.process, path_for_message(holder.host),
-                       path_for_message(holder.since));
+    const std::string job = holder.job ? fmt::format(" (Slurm job {})", holder.job->id) : "";
+    return fmt::format("process {} on {}{} since {}", holder.process, path_for_message(holder.host),
+                       job, path_for_message(holder.since));
 }
 
 }  // namespace kinetome

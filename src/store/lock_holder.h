@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "slurm_job.h"
+
 namespace kinetome {
 
 struct LockHolder {
@@ -18,6 +20,7 @@ struct LockHolder {
     uint64_t started = 0;  ///< start of the process, in clock ticks since the machine's
     std::string since;     ///< UTC
     std::string nonce;     ///< no two locks ever taken have the same
+    std::optional<SlurmJob> job;
 
     bool operator==(const LockHolder&) const = default;
 };
@@ -32,10 +35,11 @@ LockHolder this_process();
 std::string write_holder(const LockHolder& holder);
 std::optional<LockHolder> parse_holder(std::string_view text);
 
-/// Whether the holder surely exists no more. Of another machine nothing is sure.
+/// Whether the holder surely exists no more. Of another machine nothing is sure, but what Slurm
+/// tells of both jobs.
 bool is_gone(const LockHolder& holder);
 
-/// "process 123 on node7 since 2026-11-22T02:15:00Z".
+/// "process 123 on node7 (Slurm job 45) since 2026-11-22T02:15:00Z".
 std::string describe(const LockHolder& holder);
 
 }  // namespace kinetome

@@ -215,7 +215,7 @@ StoreLock StoreDirectory::lock_record() {
         } catch (const CreateError&) {
             if (std::chrono::steady_clock::now() > give_up) throw;
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
 }
 

@@ -36,6 +36,62 @@ pid_t ended_process() {
     return child.id();
 }
 
+/// An environment variable that is set while the object lives.
+class Variable {
+  public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() {
+        if (before_) {
+            ::setenv(name_, before_->c_str(), 1);
+        } else {
+            ::unsetenv(name_);
+        }
+    }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> before_;
+};
+
+/// A process of job 12 that was restarted twice, on a cluster whose squeue is a script.
+class InsideJob {
+  public:
+    explicit InsideJob(const std::string& squeue) {
+        const fs::path program = folder_.write("squeue", "#!/bin/sh\n" + squeue);
+        fs::permissions(program, fs::perms::owner_exec, fs::perm_options::add);
+    }
+    std::string asked() const {
+        std::ifstream file(folder_ / "asked");
+        std::string line;
+        std::getline(file, line);
+        return line;
+    }
+
+  private:
+    TemporaryFolder folder_;
+    Variable path_{"PATH", folder_.path().string() + ":" + std::getenv("PATH")};
+    Variable asked_{"ASKED", (folder_ / "asked").string()};
+    Variable cluster_{"SLURM_CLUSTER_NAME", "alpha"};
+    Variable job_{"SLURM_JOB_ID", "12"};
+    Variable restarts_{"SLURM_RESTART_COUNT", "2"};
+};
+
+/// A lock of a process on another machine.
+void leave_distant_lock(const fs::path& path, const nlohmann::json& job) {
+    leave_lock(path, {{"host", "another"}, {"slurm", job}});
+}
+
+nlohmann::json job(uint64_t id, int restarts = 0, uid_t user = ::geteuid()) {
+    return {{"cluster", "alpha"}, {"job", id}, {"restarts", restarts}, {"user", user}};
+}
+
+const std::string forgotten = "echo slurm_load_jobs error: Invalid job id specified >&2; exit 1";
+
 }  // namespace
 
 TEST_CASE("a lock excludes other processes and threads while it is held, and names its holder") {
@@ -132,6 +188,79 @@ TEST_CASE("a lock of which nothing is sure is left alone") {
     folder.write("writer", "a file");
     CHECK_THROWS_AS(StoreLock::take(path), CreateError);
     CHECK(fs::is_regular_file(path));
+}
+
+TEST_CASE("a job that Slurm began anew on another machine takes over the lock it had before") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "writer";
+    const InsideJob inside("echo 12 RUNNING");
+    leave_distant_lock(path, job(12, 1));
+    CHECK_FALSE(live_holder(path));
+    CHECK(StoreLock::take(path).held());
+    // Another process of this very start of the job, or of a later one.
+    for (const int restarts : {2, 3}) {
+        leave_distant_lock(path, job(12, restarts));
+        CHECK_THROWS_WITH(StoreLock::take(path), Contains("on another (Slurm job 12) since"));
+        fs::remove(path);
+    }
+}
+
+TEST_CASE("the lock of a job on another machine is taken over once Slurm says that it is over") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "writer";
+    const std::string prefix = "echo \"$@\" >$ASKED\n";
+    for (const std::string& squeue :
+         {std::string("echo 45 CANCELLED"), std::string("echo 46 RUNNING; echo 45 NODE_FAIL"),
+          forgotten}) {
+        CAPTURE(squeue);
+        const InsideJob inside(prefix + squeue);
+        leave_distant_lock(path, job(45));
+        CHECK(StoreLock::take(path).held());
+        CHECK_THAT(inside.asked(), Contains("--jobs=45 "));
+    }
+}
+
+TEST_CASE("the lock of a job on another machine is left alone while there is any doubt") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "writer";
+    const auto left_alone = [&](const std::string& squeue, const nlohmann::json& holder) {
+        CAPTURE(squeue, holder.dump());
+        const InsideJob inside(squeue);
+        leave_distant_lock(path, holder);
+        CHECK(live_holder(path));
+        fs::remove(path);
+    };
+    for (const char* squeue :
+         {"echo 45 RUNNING", "echo 45 COMPLETING", "echo 45 PENDING", "echo 46 COMPLETED", "true",
+          "echo 45 COMPLETED; exit 1", "echo Unable to contact slurm controller >&2; exit 1",
+          "echo 45 COMPLETED; echo 45 PENDING", "exit 127"}) {
+        left_alone(squeue, job(45));
+    }
+    left_alone(forgotten, job(45, 0, ::geteuid() + 1));
+    const std::string over = "echo 45 COMPLETED";
+    nlohmann::json elsewhere = job(45);
+    elsewhere["cluster"] = "beta";
+    left_alone(over, elsewhere);
+    nlohmann::json hostile = job(45);
+    hostile["job"] = "45; touch /tmp/x";
+    left_alone(over, hostile);
+    // Nor from outside of any job.
+    const InsideJob inside(over);
+    const Variable none("SLURM_JOB_ID", "");
+    leave_distant_lock(path, job(45));
+    CHECK(live_holder(path));
+}
+
+TEST_CASE("on the same machine the process decides, whatever Slurm says of its job") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "writer";
+    const InsideJob inside("echo 45 COMPLETED");
+    const nlohmann::json over = {{"slurm", job(45)}};
+    leave_lock(path, over);
+    CHECK(live_holder(path));
+    fs::remove(path);
+    leave_lock(path, {{"process", ended_process()}, {"slurm", job(12, 2)}});
+    CHECK_FALSE(live_holder(path));
 }
 
 TEST_CASE("the holder is shown without its control characters") {

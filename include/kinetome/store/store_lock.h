@@ -15,8 +15,9 @@ namespace kinetome {
 class StoreLock {
   public:
     /// Takes the lock at `path`, or takes it over when its holder is gone: a process of this
-    /// machine that ended, or one from before this machine's last start. Throws CreateError naming
-    /// the holder when it lives or is out of sight (on another machine).
+    /// machine that ended, one from before this machine's last start, or, on another machine, one
+    /// whose Slurm job is over or was begun anew as the job of this process. Throws CreateError
+    /// naming the holder when it lives or is out of sight.
     static StoreLock take(const std::filesystem::path& path);
     /// A lock that is not held, for a store one may only read.
     StoreLock() = default;
