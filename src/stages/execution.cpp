@@ -6,13 +6,10 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/run/meter.h"
+#include "kinetome/stages/disk_need.h"
 
 namespace kinetome {
 namespace {
-
-/// Bytes that a claimed frame takes in a sharded stage: 155 values in frames, 159 in features on a
-/// skeleton of 31 joints, with room for larger ones.
-constexpr uint64_t bytes_per_frame_and_stage = 1024;
 
 bool is_selected(const RunPlan& plan, const PlannedWork& work, const Selection& selection) {
     if (!selection.stages.empty() && !selection.stages.count(work.stage->name)) return false;
@@ -61,23 +58,22 @@ FinishedWork make(const RunPlan& plan, const PlannedWork& work, const StageTask&
 
 }  // namespace
 
+std::vector<size_t> work_to_make(const RunPlan& plan, const FinishedPlan& finished,
+                                 const Selection& selection) {
+    std::vector<size_t> positions;
+    for (size_t i = 0; i < plan.work.size(); ++i) {
+        if (!finished[i] && is_selected(plan, plan.work[i], selection)) positions.push_back(i);
+    }
+    return positions;
+}
+
 void require_room(const RunPlan& plan, const FinishedPlan& finished, const Selection& selection,
                   const Workspace& workspace) {
-    uint64_t frames = 0;
-    for (size_t i = 0; i < plan.work.size(); ++i) {
-        const PlannedWork& work = plan.work[i];
-        if (work.shard && !finished[i] && is_selected(plan, work, selection)) {
-            frames += static_cast<uint64_t>(work.shard->claimed_frames);
-        }
-    }
-    const uint64_t needed = frames * bytes_per_frame_and_stage;
-    const uint64_t free = free_bytes(workspace.folder());
-    if (needed > free) {
-        throw CreateError(fmt::format(
-            "{}: this run needs about {}, but only {} are free: free "
-            "space, or choose a store on another disk",
-            workspace.store().path().string(), describe_bytes(needed), describe_bytes(free)));
-    }
+    const CorpusShape corpus = corpus_shape(plan.survey, plan.shards, plan.options);
+    require_room(workspace.store().path(),
+                 disk_need(plan, corpus, planned_bytes(plan, corpus, workspace.last()),
+                           work_to_make(plan, finished, selection), selection.copies),
+                 free_space(workspace.folder()));
 }
 
 FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,

@@ -36,6 +36,10 @@ void require_folder(const fs::path& corpus) {
                                                       error ? error.message() : "no such folder"));
 }
 
+Selection selection_of(const ReindexRequest& request) {
+    return {.stages = request.only, .slice = {}, .copies = request.copy};
+}
+
 /// A joined run has its store already, and a mistyped name shall not make one.
 StoreDirectory open_store(const ReindexRequest& request) {
     return request.join ? StoreDirectory::open(request.store)
@@ -143,7 +147,8 @@ RunRecord open_run(const ReindexRequest& request, const Log& terminal, const Sto
                      request.options};
     const RunPlan plan(record.survey, record.options);
     tell(plan, run.log());
-    require_room(plan, find_finished(plan, run.workspace()), {}, run.workspace());
+    require_room(plan, find_finished(plan, run.workspace()), selection_of(request),
+                 run.workspace());
     run.enter(record, "");
     return record;
 }
@@ -166,8 +171,8 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, run.workspace());
-    const FinishedPlan after = carry_out(plan, before, {.stages = request.only, .slice = {}},
-                                         run.workspace(), request.resources, run.log(), stop);
+    const FinishedPlan after = carry_out(plan, before, selection_of(request), run.workspace(),
+                                         request.resources, run.log(), stop);
     Publication publication = request.publish
                                   ? publish_and_forget(run, plan, after, request.copy)
                                   : prepare_publication(plan, after, run.last(), run.log());

@@ -176,6 +176,13 @@ struct ArtifactWriter::State {
     }
 };
 
+uint64_t dataset_bytes(int64_t row_bytes, int64_t rows) {
+    constexpr int64_t description_bytes = 512;  // header, attributes, entries of chunk and group
+    const int64_t chunk = rows_of_a_chunk(row_bytes);
+    const int64_t stored = rows > chunk ? (rows + chunk - 1) / chunk * chunk : rows;
+    return static_cast<uint64_t>(stored * row_bytes + description_bytes);
+}
+
 ArtifactWriter::ArtifactWriter(fs::path path, const ArtifactHeader& header, Compression compression)
     : state_(std::make_unique<State>(std::move(path), compression)) {
     const std::vector<h5::Attribute> attributes{{"kinetome_format", int64_t{header.format_version}},

@@ -1,10 +1,8 @@
 #include "kinetome/store/store_directory.h"
 
 #include <fmt/format.h>
-#include <sys/statvfs.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <system_error>
 #include <thread>
@@ -289,17 +287,6 @@ void StoreDirectory::remove_stale_leases() const {
     for (const std::string& name : names_in(leases)) {
         if (!live_holder(leases / name)) remove_tree(leases / name);
     }
-}
-
-uint64_t free_bytes(const fs::path& folder) {
-    fs::path existing = fs::absolute(folder);
-    while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
-    struct statvfs status {};
-    if (::statvfs(existing.c_str(), &status) != 0) {
-        throw StoreError(fmt::format("cannot tell the free space of {}: {}", shown(existing),
-                                     std::generic_category().message(errno)));
-    }
-    return static_cast<uint64_t>(status.f_bavail) * status.f_frsize;
 }
 
 }  // namespace kinetome

@@ -284,14 +284,3 @@ TEST_CASE("a store that one may only read is read without a lease, and not writt
     CHECK(child.output == "");
     fs::permissions(folder / "store" / "locks" / "leases", fs::perms::owner_all);
 }
-
-TEST_CASE("free bytes are those of the file system, also for a folder that is not there yet") {
-    const TemporaryFolder folder;
-    const uint64_t here = free_bytes(folder.path());
-    CHECK(here > 0);
-    CHECK(here == fs::space(folder.path()).available);
-    CHECK(free_bytes(folder / "not" / "yet") > 0);
-    CHECK(free_bytes("relative/not/yet") > 0);
-    // An independent count: what is written is no longer free.
-    if (fs::exists("/proc/self/mem")) CHECK(free_bytes("/proc") == 0);
-}

@@ -18,10 +18,15 @@ namespace kinetome {
 struct Selection {
     std::set<std::string> stages;  ///< empty: all
     std::optional<Slice> slice;    ///< of the shards; stages that make one file are left out then
+    bool copies = false;  ///< publishing will copy files instead of linking them: room for both
 };
 
 /// Finished work by position in the plan; nothing where it was neither found nor selected.
 using FinishedPlan = std::vector<std::optional<FinishedWork>>;
+
+/// Positions in plan.work of what is selected and not finished.
+std::vector<size_t> work_to_make(const RunPlan& plan, const FinishedPlan& finished,
+                                 const Selection& selection);
 
 /// Throws CreateError when the disk has too little room for selected work that is not finished.
 void require_room(const RunPlan& plan, const FinishedPlan& finished, const Selection& selection,

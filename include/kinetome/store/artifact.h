@@ -40,6 +40,10 @@ struct ArtifactRecord {
     bool operator==(const ArtifactRecord&) const = default;
 };
 
+/// Bytes that a dataset of so many rows takes in an artifact that is not compressed: its values in
+/// whole chunks (once it outgrows the first), and its description.
+uint64_t dataset_bytes(int64_t row_bytes, int64_t rows);
+
 /// Writes one artifact. Until close() nothing exists under the final name; a writer destroyed
 /// before that removes its temporary file. The file's bytes depend on the rows and on the order in
 /// which datasets fill up, not on how a dataset's rows are split among calls.

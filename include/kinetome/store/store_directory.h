@@ -89,7 +89,4 @@ class StoreDirectory {
     std::filesystem::path path_;
 };
 
-/// Bytes that may still be written below a folder, which need not exist yet. Throws StoreError.
-uint64_t free_bytes(const std::filesystem::path& folder);
-
 }  // namespace kinetome

@@ -1,0 +1,67 @@
+// How large a corpus is in what costs time and space: frames, columns and partitions, known before
+// any motion is read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kinetome/run/shard_plan.h"
+#include "kinetome/stages/options.h"
+#include "kinetome/stages/survey.h"
+#include "kinetome/store/catalog.h"
+
+namespace kinetome {
+
+/// A class of skeletons. The defaults are CMU's, for takes whose skeleton is not known yet.
+struct ClassShape {
+    std::string name;
+    int64_t joints = 31;
+    int64_t dofs = 62;
+    int64_t pose_columns = 62;
+};
+
+struct ClipShape {
+    std::string name;
+    std::string source;  ///< path below the corpus, which may tell the subject
+    size_t clip_class = 0;
+    int64_t frames = 0;  ///< at the source's rate
+    double rate = 0;     ///< frames a second
+    uint64_t source_bytes = 0;
+
+    int64_t frames_at(double other_rate) const;
+};
+
+struct CorpusShape {
+    std::vector<ClassShape> classes;
+    std::vector<ClipShape> clips;                       ///< in name order
+    std::map<std::string, std::vector<size_t>> shards;  ///< cut → its clips
+
+    const ClassShape& class_of(const ClipShape& clip) const { return classes[clip.clip_class]; }
+    int64_t frames() const;
+};
+
+/// What the takes claim; those that the survey quarantined, or whose skeleton cannot be parsed, are
+/// left out. Skeleton files are read, takes are not.
+CorpusShape corpus_shape(const Survey& survey, const std::vector<Shard>& shards,
+                         const ReindexOptions& options);
+/// What a generation holds.
+CorpusShape corpus_shape(const Catalog& catalog);
+
+/// Poses that will be clustered together.
+struct PartitionShape {
+    int64_t clips = 0;
+    int64_t rows = 0;    ///< pose vectors
+    int64_t pieces = 0;  ///< that ranks can share (base/pieces.h)
+    int64_t pose_columns = 0;
+    std::vector<int64_t> cluster_counts;  ///< every κ that is fitted
+
+    int64_t most_clusters() const;
+};
+
+/// As pose_partitions will make them; those too small to be clustered are left out.
+std::vector<PartitionShape> partition_shapes(const CorpusShape& corpus,
+                                             const ReindexOptions& options);
+
+}  // namespace kinetome

@@ -1,0 +1,239 @@
+#include "kinetome/stages/disk_need.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/base/resources.h"
+
+namespace kinetome {
+namespace {
+
+/// Principal components and frames a letter of real motion, before either is known. Both files
+/// are small beside the sharded ones.
+constexpr int64_t typical_components = 12;
+constexpr int64_t typical_frames_per_letter = 15;
+
+/// Bytes of datasets that are there once a class or a partition.
+class Group {
+  public:
+    Group& rows(int64_t count, std::initializer_list<int64_t> row_bytes) {
+        for (const int64_t bytes : row_bytes) bytes_ += dataset_bytes(bytes, count);
+        return *this;
+    }
+    uint64_t bytes() const { return bytes_; }
+
+  private:
+    uint64_t bytes_ = 0;
+};
+
+constexpr int64_t number = 8, index = 4, value = 4, name = 16;  // bytes of one
+
+/// FrameShardWriter.
+uint64_t frames_bytes(const ClassShape& shape, int64_t clips, int64_t frames) {
+    return Group()
+        .rows(shape.joints, {name, name, name, index, 1})
+        .rows(clips, {number, number, number, name, name})
+        .rows(clips,
+              {3 * shape.joints * number, 3 * shape.joints * number, 9 * shape.joints * number})
+        .rows(frames, {shape.dofs * value, 3 * shape.joints * value})
+        .bytes();
+}
+
+/// FeatureShardWriter.
+uint64_t features_bytes(const ClassShape& shape, int64_t clips, int64_t pose_rows,
+                        int64_t effector_rows) {
+    constexpr int64_t effector_values = 15;
+    return Group()
+        .rows(shape.pose_columns, {name, name, number})
+        .rows(shape.joints, {name})
+        .rows(1, {number, number})
+        .rows(clips, {number, name, number, number, number, number})
+        .rows(pose_rows, {shape.pose_columns * value, 3 * shape.joints * value})
+        .rows(effector_rows, {effector_values * value})
+        .bytes();
+}
+
+uint64_t mixture_bytes(int64_t clusters) {
+    return static_cast<uint64_t>(clusters * (typical_components + 2) * number);
+}
+
+/// write_pose_clusters.
+uint64_t pose_clusters_bytes(const PartitionShape& partition, const MixtureOptions& options) {
+    const int64_t clusters = partition.most_clusters();
+    return Group()
+        .rows(partition.pose_columns, {number, number, number, typical_components * number})
+        .rows(clusters, {typical_components * number, number, number})
+        .rows(options.max_iterations, {number})
+        .rows(1, {number, number, number})
+        .bytes();
+}
+
+/// What motion_strings writes of a partition.
+uint64_t motion_strings_bytes(const PartitionShape& partition) {
+    constexpr int64_t word_bits = 64;
+    const int64_t clusters = partition.most_clusters();
+    const int64_t letters = partition.rows / typical_frames_per_letter + 1;
+    return Group()
+        .rows(partition.clips, {number, name, number, number, number})
+        .rows(letters, {index, number, index, index, number})
+        .rows(clusters, {(clusters + word_bits - 1) / word_bits * number})
+        .rows(1, {number, number, number})
+        .bytes();
+}
+
+/// Clips and rows of one class in a shard.
+struct ClassRows {
+    int64_t clips = 0, frames = 0, pose_rows = 0, effector_rows = 0;
+};
+
+uint64_t shard_bytes(bool features, const std::string& cut, const CorpusShape& corpus,
+                     const FeatureOptions& options) {
+    const auto shard = corpus.shards.find(cut);
+    if (shard == corpus.shards.end()) return 0;
+    std::map<size_t, ClassRows> classes;
+    for (const size_t i : shard->second) {
+        const ClipShape& clip = corpus.clips[i];
+        ClassRows& rows = classes[clip.clip_class];
+        ++rows.clips;
+        rows.frames += clip.frames;
+        rows.pose_rows += clip.frames_at(options.pose_rate);
+        rows.effector_rows += clip.frames_at(options.effector_rate);
+    }
+    uint64_t bytes = 0;
+    for (const auto& [clip_class, rows] : classes) {
+        const ClassShape& shape = corpus.classes[clip_class];
+        bytes += features ? features_bytes(shape, rows.clips, rows.pose_rows, rows.effector_rows)
+                          : frames_bytes(shape, rows.clips, rows.frames);
+    }
+    return bytes;
+}
+
+/// For each stage of the last generation, its bytes as a multiple of its layout's. Empty when that
+/// cannot be told, or when the files are compressed another way now.
+std::map<std::string, double> byte_corrections(const Generation& last,
+                                               const ReindexOptions& options) {
+    ReindexOptions earlier;
+    try {
+        const std::filesystem::path file = last.folder() / "config.toml";
+        parse_configuration(read_file(file), file.string(), earlier);
+    } catch (const Error&) {
+        return {};
+    }
+    if (earlier.frames.compression != options.frames.compression) return {};
+    const CorpusShape corpus = corpus_shape(last.catalog());
+    std::map<std::string, uint64_t> expected, found;
+    for (const Receipt& receipt : last.ledger().receipts) {
+        expected[receipt.stage] += artifact_bytes(receipt.stage, receipt.shard, corpus, earlier);
+        found[receipt.stage] += receipt.file.bytes;
+    }
+    std::map<std::string, double> corrections;
+    for (const auto& [stage, bytes] : expected) {
+        if (bytes > 0) {
+            corrections[stage] = static_cast<double>(found[stage]) / static_cast<double>(bytes);
+        }
+    }
+    return corrections;
+}
+
+/// Models after the last iteration of every partition, and one more while a file is replaced.
+DiskNeed checkpoints(const CorpusShape& corpus, const ReindexOptions& options) {
+    const bool keeps_best = options.pose_clusters.mixture.restarts > 1 ||
+                            options.pose_clusters.count_rule == ClusterCountRule::bic;
+    DiskNeed need;
+    uint64_t largest = 0;
+    for (const PartitionShape& partition : partition_shapes(corpus, options)) {
+        const uint64_t bytes = mixture_bytes(partition.most_clusters()) * (keeps_best ? 3 : 1);
+        need.bytes += bytes;
+        ++need.inodes;
+        largest = std::max(largest, bytes);
+    }
+    need.bytes += largest;
+    ++need.inodes;
+    return need;
+}
+
+/// Catalog, ledger, configuration and log of a generation; receipts and record of the run; locks
+/// and folders.
+DiskNeed texts(const RunPlan& plan) {
+    constexpr uint64_t bytes_per_take = 2048, bytes_per_artifact = 4096, bytes_once = 16 * 1024;
+    constexpr uint64_t inodes_once = 20;
+    return {bytes_per_take * plan.survey.takes.size() + bytes_per_artifact * plan.work.size() +
+                bytes_once,
+            inodes_once};
+}
+
+}  // namespace
+
+uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
+                        const ReindexOptions& options) {
+    if (stage == "frames") return shard_bytes(false, cut, corpus, options.features);
+    if (stage == "features") return shard_bytes(true, cut, corpus, options.features);
+    uint64_t bytes = 0;
+    for (const PartitionShape& partition : partition_shapes(corpus, options)) {
+        if (stage == "pose_clusters") {
+            bytes += pose_clusters_bytes(partition, options.pose_clusters.mixture);
+        }
+        if (stage == "motion_strings") bytes += motion_strings_bytes(partition);
+    }
+    return bytes;
+}
+
+std::vector<uint64_t> planned_bytes(const RunPlan& plan, const CorpusShape& corpus,
+                                    const Generation* last) {
+    std::map<std::string, double> corrections;
+    if (last) corrections = byte_corrections(*last, plan.options);
+    std::vector<uint64_t> bytes;
+    for (const PlannedWork& work : plan.work) {
+        const auto correction = corrections.find(work.stage->name);
+        const double factor = correction == corrections.end() ? 1 : correction->second;
+        const uint64_t layout = artifact_bytes(work.stage->name, work.shard ? work.shard->cut : "",
+                                               corpus, plan.options);
+        bytes.push_back(static_cast<uint64_t>(std::llround(static_cast<double>(layout) * factor)));
+    }
+    return bytes;
+}
+
+DiskNeed disk_need(const RunPlan& plan, const CorpusShape& corpus,
+                   const std::vector<uint64_t>& planned_bytes, const std::vector<size_t>& to_make,
+                   bool copies) {
+    DiskNeed need;
+    if (to_make.empty()) return need;
+    const auto add = [&](const DiskNeed& more) {
+        need.bytes += more.bytes;
+        need.inodes += more.inodes;
+    };
+    bool clusters = false;
+    for (const size_t i : to_make) {
+        add({planned_bytes[i], 2});  // the file and its receipt
+        clusters = clusters || plan.work[i].stage->name == "pose_clusters";
+    }
+    if (clusters) add(checkpoints(corpus, plan.options));
+    if (copies) {
+        add({std::accumulate(planned_bytes.begin(), planned_bytes.end(), uint64_t{0}),
+             planned_bytes.size()});
+    }
+    add(texts(plan));
+    return need;
+}
+
+void require_room(const std::filesystem::path& store, const DiskNeed& need, const FreeSpace& free) {
+    const auto refuse = [&](const std::string& needed, const std::string& left) {
+        throw CreateError(
+            fmt::format("{}: this run needs about {}, but only {} are free on its disk: free some "
+                        "(`kinetome gc` drops old generations), or choose a store on another disk",
+                        path_for_message(store.string()), needed, left));
+    };
+    if (need.bytes > free.bytes) refuse(describe_bytes(need.bytes), describe_bytes(free.bytes));
+    if (free.inodes && need.inodes > *free.inodes) {
+        refuse(fmt::format("{} files", need.inodes), fmt::format("{} inodes", *free.inodes));
+    }
+}
+
+}  // namespace kinetome
