@@ -148,6 +148,10 @@ Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> 
     return resources;
 }
 
+uint64_t resident_bytes() {
+    return kilobyte_line("/proc/self/status", "VmRSS:").value_or(0);
+}
+
 uint64_t peak_resident_bytes() {
     if (const auto peak = kilobyte_line("/proc/self/status", "VmHWM:")) return *peak;
     rusage usage{};

@@ -75,6 +75,16 @@ class Unpacker {
 };
 
 /// A type that can travel has pack(Packer&, const T&) and unpack(Unpacker&, T&) beside it.
+template <class T>
+requires std::is_arithmetic_v<T>
+void pack(Packer& out, const T& value) {
+    out.put(value);
+}
+template <class T>
+requires std::is_arithmetic_v<T>
+void unpack(Unpacker& in, T& value) {
+    value = in.get<T>();
+}
 template <class Scalar>
 void pack(Packer& out, const RowMatrix<Scalar>& matrix) {
     out.template put<int64_t>(matrix.rows()).template put<int64_t>(matrix.cols());

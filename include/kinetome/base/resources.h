@@ -41,6 +41,9 @@ uint64_t parse_bytes(std::string_view text);
 /// "8.00 GiB (8589934592 bytes)".
 std::string describe_bytes(uint64_t bytes);
 
+/// Resident size of this process now (VmRSS).
+uint64_t resident_bytes();
+
 /// Highest resident size of this process so far (VmHWM).
 uint64_t peak_resident_bytes();
 
