@@ -147,7 +147,7 @@ Rows gather(const Corpus& corpus, int64_t most_frames) {
 }
 
 Pca fit(const Rows& rows, const Corpus& corpus, int threads) {
-    return fit_pca(moments_of(rows.poses, rows.layout, threads), corpus.floor, 0.70);
+    return fit_pca(moments_of(MatrixRows(rows.poses, rows.layout), threads), corpus.floor, 0.70);
 }
 
 double components_at_70_percent(const Corpus& corpus, int threads) {
@@ -158,8 +158,10 @@ double components_at_70_percent(const Corpus& corpus, int threads) {
 double frames_per_letter(const Corpus& corpus, int64_t frames, int threads) {
     const Rows rows = gather(corpus, frames);
     const MatrixF projected = fit(rows, corpus, threads).project(rows.poses);
-    const PoseClusters clusters = fit_pose_clusters(projected, rows.layout, {}, threads);
-    const std::vector<int32_t> letters = likeliest_clusters(clusters.fit.model, projected, threads);
+    const PoseClusters clusters =
+        fit_pose_clusters(MatrixRows(projected, rows.layout), {}, threads);
+    const std::vector<int32_t> letters =
+        likeliest_clusters(clusters.fit.model, MatrixRows(projected), threads);
     const MotionString string = make_motion_string(letters, rows.clip_frames);
     return static_cast<double>(rows.poses.rows()) / static_cast<double>(string.size());
 }

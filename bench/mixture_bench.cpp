@@ -132,14 +132,16 @@ struct Workload {
         : rows(options.rows.empty() ? pose_like_rows(options.frames, options.dimension)
                                     : read_rows(options)),
           layout(layout_rows(rows.rows())) {
-        start_cost = cost_of(
-            [&] { start = start_mixture(rows, layout, options.clusters, {}, 0, options.threads); });
+        start_cost = cost_of([&] {
+            start =
+                start_mixture(MatrixRows(rows, layout), options.clusters, {}, 0, options.threads);
+        });
     }
     /// No floor but that of rounding: scikit-learn has another one.
     double floor() const {
         MixtureOptions options;
         options.variance_floor = 0;
-        return least_variance(moments_of(rows, layout, 1), options);
+        return least_variance(moments_of(MatrixRows(rows, layout), 1), options);
     }
 
     MatrixF rows;
@@ -155,7 +157,7 @@ void print_iterations(const Workload& work, const Options& options) {
     for (int i = 0; i < options.iterations; ++i) {
         MixtureSums sums;
         const Cost cost = cost_of([&] {
-            sums = accumulate(model, work.rows, work.layout, options.threads);
+            sums = accumulate(model, MatrixRows(work.rows, work.layout), options.threads);
             model = estimate(model, sums, floor);
         });
         const double evaluations =
@@ -173,7 +175,8 @@ void print_json(const Workload& work, const Options& options) {
     Mixture model = work.start;
     for (int i = 0; i < options.iterations; ++i) {
         const Cost cost = cost_of([&] {
-            const MixtureSums sums = accumulate(model, work.rows, work.layout, options.threads);
+            const MixtureSums sums =
+                accumulate(model, MatrixRows(work.rows, work.layout), options.threads);
             model = estimate(model, sums, floor);
             likelihoods.push_back(sums.mean_log_likelihood());
         });
@@ -192,12 +195,14 @@ void print_scaling(const Workload& work, const Options& options) {
     Mixture model = work.start;
     for (int i = 0; i < options.repetitions; ++i) {
         const auto wall = [&](int threads) {
-            return cost_of([&] { accumulate(model, work.rows, work.layout, threads); }).wall;
+            return cost_of([&] { accumulate(model, MatrixRows(work.rows, work.layout), threads); })
+                .wall;
         };
         one.push_back(wall(1));
         two.push_back(wall(2));
         ratios.push_back(one.back() / two.back());
-        if (i == 0) model = estimate(model, accumulate(model, work.rows, work.layout, 2), 1e-6);
+        if (i == 0)
+            model = estimate(model, accumulate(model, MatrixRows(work.rows, work.layout), 2), 1e-6);
     }
     const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
     std::printf("1 thread %.4f s, 2 threads %.4f s (medians of %d): %.2f times (%.2f to %.2f)\n",

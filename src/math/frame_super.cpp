@@ -16,9 +16,9 @@ FrameSuper::FrameSuper(int64_t dimension)
       strips_(static_cast<size_t>(super_rows * (dimension + 1))),
       rows_(static_cast<size_t>(super_rows * padded(dimension))) {}
 
-void FrameSuper::load(const MatrixFView& rows, const RowRange& range) {
+void FrameSuper::load(const MatrixFView& rows, const RowRange& range, int64_t first_row) {
     size_ = range.size();
-    find_centre(rows, range);
+    find_centre(rows, range, first_row);
     for (int64_t i = 0; i < size_; ++i) {
         const float* const from = rows.data() + (range.first + i) * rows.outerStride();
         float* const to = rows_.data() + i * row_stride();
@@ -28,7 +28,7 @@ void FrameSuper::load(const MatrixFView& rows, const RowRange& range) {
     for (int64_t i = 0; i < strips() * strip_rows; ++i) spread(i);
 }
 
-void FrameSuper::find_centre(const MatrixFView& rows, const RowRange& range) {
+void FrameSuper::find_centre(const MatrixFView& rows, const RowRange& range, int64_t first_row) {
     std::vector<double> sums(static_cast<size_t>(dimension_));
     for (int64_t i = range.first; i < range.end; ++i) {
         const float* const row = rows.data() + i * rows.outerStride();
@@ -36,7 +36,7 @@ void FrameSuper::find_centre(const MatrixFView& rows, const RowRange& range) {
     }
     // A sum of finite floats is a finite double: one look at the sum tells of every value.
     for (size_t j = 0; j < sums.size(); ++j) {
-        if (!std::isfinite(sums[j])) require_finite(rows);
+        if (!std::isfinite(sums[j])) require_finite(rows, first_row);
         centre_[j] = static_cast<float>(sums[j] / static_cast<double>(range.size()));
     }
 }

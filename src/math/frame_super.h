@@ -24,8 +24,9 @@ class FrameSuper {
     explicit FrameSuper(int64_t dimension);
 
     /// Takes rows [range.first, range.end), at most super_rows and at least one. Throws
-    /// std::invalid_argument when a value is not finite. Lanes beyond the end repeat the last row.
-    void load(const MatrixFView& rows, const RowRange& range);
+    /// std::invalid_argument when a value is not finite, counting rows from `first_row`. Lanes
+    /// beyond the end repeat the last row.
+    void load(const MatrixFView& rows, const RowRange& range, int64_t first_row);
 
     int64_t size() const { return size_; }
     int64_t dimension() const { return dimension_; }
@@ -53,7 +54,7 @@ class FrameSuper {
     }
 
   private:
-    void find_centre(const MatrixFView& rows, const RowRange& range);
+    void find_centre(const MatrixFView& rows, const RowRange& range, int64_t first_row);
     void spread(int64_t row);
 
     int64_t dimension_;

@@ -3,7 +3,7 @@
 
 #include "candidate_search.h"
 #include "frame_super.h"
-#include "kinetome/base/parallel.h"
+#include "kinetome/base/piece_sum.h"
 #include "kinetome/math/mixture.h"
 #include "mixture_input.h"
 
@@ -32,30 +32,46 @@ int32_t likeliest_of(std::span<const int32_t> candidates, const ClusterDensities
     return likeliest;
 }
 
+/// Letters of a run of rows, whose first has the number `first_row`.
+void assign(const ClusterDensities& densities, const ClusterGroups& groups, const MatrixFView& rows,
+            int64_t first_row, int32_t* likeliest) {
+    FrameSuper frames(densities.dimension());
+    CandidateSearch search(groups, 0.0F);
+    for (int64_t first = 0; first < rows.rows(); first += super_rows) {
+        frames.load(rows, {first, std::min(first + super_rows, rows.rows())}, first_row);
+        search.run(frames);
+        for (int64_t i = 0; i < frames.size(); ++i) {
+            likeliest[first + i] = likeliest_of(search.candidates(i / tile_rows), densities,
+                                                rows.data() + (first + i) * rows.outerStride());
+        }
+    }
+}
+
 }  // namespace
 
-std::vector<int32_t> likeliest_clusters(const Mixture& model, const MatrixFView& rows,
-                                        int threads) {
-    require_dimension_of(rows, model.dimension());
+std::vector<int32_t> likeliest_clusters(const Mixture& model, const RowSource& rows,
+                                        const Workers& workers) {
+    require_dimension_of(rows.columns(), model.dimension());
     const ClusterDensities densities(model, false);
     const ClusterGroups groups(densities);
-    std::vector<int32_t> likeliest(static_cast<size_t>(rows.rows()));
-    const int64_t pieces = (rows.rows() + piece_frames - 1) / piece_frames;
-    parallel_for(threads, pieces, [&](int64_t piece) {
-        FrameSuper frames(densities.dimension());
-        CandidateSearch search(groups, 0.0F);
-        const int64_t end = std::min((piece + 1) * piece_frames, rows.rows());
-        for (int64_t first = piece * piece_frames; first < end; first += super_rows) {
-            frames.load(rows, {first, std::min(first + super_rows, end)});
-            search.run(frames);
-            for (int64_t i = 0; i < frames.size(); ++i) {
-                likeliest[static_cast<size_t>(first + i)] =
-                    likeliest_of(search.candidates(i / tile_rows), densities,
-                                 rows.data() + (first + i) * rows.outerStride());
-            }
-        }
+    const auto& pieces = rows.layout().pieces;
+    const RowRange share = share_of_pieces(rows.layout(), workers.rank(), workers.rank_count());
+    const int64_t first_row = share.size() ? pieces[size_t(share.first)].first : 0;
+    const int64_t end_row = share.size() ? pieces[size_t(share.end - 1)].end : 0;
+    std::vector<int32_t> mine(static_cast<size_t>(end_row - first_row));
+    parallel_for(workers.threads, share.size(), [&](int64_t i) {
+        const RowRange& piece = pieces[static_cast<size_t>(share.first + i)];
+        assign(densities, groups, rows.read(piece).view(), piece.first,
+               mine.data() + (piece.first - first_row));
     });
-    return likeliest;
+    if (workers.rank_count() == 1) return mine;
+
+    std::vector<int32_t> all;
+    for (std::string& part : workers.ranks->gather_to_all(packed(mine))) {
+        const auto letters = unpacked<std::vector<int32_t>>(std::move(part));
+        all.insert(all.end(), letters.begin(), letters.end());
+    }
+    return all;
 }
 
 }  // namespace kinetome

@@ -6,7 +6,7 @@
 
 #include "candidate_search.h"
 #include "frame_super.h"
-#include "kinetome/base/parallel.h"
+#include "kinetome/base/piece_sum.h"
 #include "kinetome/math/mixture.h"
 #include "lanes.h"
 #include "mixture_input.h"
@@ -104,14 +104,15 @@ class PieceExpectation {
         sums_.squared.setZero(densities.clusters());
     }
 
-    MixtureSums run(const MatrixFView& rows, const RowRange& piece) {
-        for (int64_t first = piece.first; first < piece.end; first += super_rows) {
-            frames_.load(rows, {first, std::min(first + super_rows, piece.end)});
+    /// `first_row` is the number of the first of these rows, for messages.
+    MixtureSums run(const MatrixFView& rows, int64_t first_row) {
+        for (int64_t first = 0; first < rows.rows(); first += super_rows) {
+            frames_.load(rows, {first, std::min(first + super_rows, rows.rows())}, first_row);
             search_.run(frames_);
             for (int64_t tile = 0; tile < frames_.tiles(); ++tile) add_tile(tile);
             touched_.flush(sums_);
         }
-        sums_.rows = piece.size();
+        sums_.rows = rows.rows();
         return std::move(sums_);
     }
 
@@ -227,17 +228,18 @@ class PieceExpectation {
 
 }  // namespace
 
-MixtureSums accumulate(const Mixture& model, const MatrixFView& rows, const PieceLayout& layout,
-                       int threads) {
-    require_layout_of(rows, layout);
-    require_dimension_of(rows, model.dimension());
+MixtureSums accumulate(const Mixture& model, const RowSource& rows, const Workers& workers) {
+    require_dimension_of(rows.columns(), model.dimension());
     const ClusterDensities densities(model, true);
     const ClusterGroups groups(densities);
+    const auto sums_of = [&](const MatrixFView& piece, int64_t first_row) {
+        return PieceExpectation(densities, groups).run(piece, first_row);
+    };
     auto sums = sum_pieces<MixtureSums>(
-        threads, layout,
-        [&](const RowRange& piece) { return PieceExpectation(densities, groups).run(rows, piece); },
+        workers, rows.layout(),
+        [&](const RowRange& piece) { return sums_of(rows.read(piece).view(), piece.first); },
         [](MixtureSums& left, const MixtureSums& right) { merge(left, right); });
-    return sums ? *std::move(sums) : PieceExpectation(densities, groups).run(rows, {});
+    return sums ? *std::move(sums) : sums_of(MatrixF(0, rows.columns()), 0);
 }
 
 }  // namespace kinetome

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "kinetome/math/mixture.h"
-#include "mixture_input.h"
+#include "mixture_start.h"
 
 namespace kinetome {
 namespace {
@@ -11,17 +11,16 @@ namespace {
 /// The loop of fit_mixture: what stays the same from one iteration to the next.
 class Fitter {
   public:
-    Fitter(const MatrixFView& rows, const PieceLayout& layout, int64_t clusters,
-           const MixtureOptions& options, int threads, const StopToken& stop,
+    Fitter(const RowSource& rows, int64_t clusters, const MixtureOptions& options,
+           const Workers& workers, const StopToken& stop,
            const std::function<void(const MixtureProgress&)>& report)
         : rows_(rows),
-          layout_(layout),
           clusters_(clusters),
           options_(options),
-          threads_(threads),
+          workers_(workers),
           stop_(stop),
           report_(report),
-          least_variance_(least_variance(moments_of(rows, layout, threads), options)) {}
+          least_variance_(checked_least_variance(rows, options, workers)) {}
 
     MixtureFit run(MixtureProgress progress) const {
         for (;;) {
@@ -41,7 +40,8 @@ class Fitter {
         MixtureProgress progress;
         progress.restart = restart;
         progress.best = std::move(best);
-        progress.model = start_mixture(rows_, layout_, clusters_, options_, restart, threads_);
+        progress.model =
+            start_mixture(rows_, clusters_, options_, least_variance_, restart, workers_);
         return progress;
     }
 
@@ -51,7 +51,7 @@ class Fitter {
     }
 
     void iterate(MixtureProgress& progress) const {
-        const MixtureSums sums = accumulate(progress.model, rows_, layout_, threads_);
+        const MixtureSums sums = accumulate(progress.model, rows_, workers_);
         progress.mean_log_likelihood = sums.mean_log_likelihood();
         progress.converged =
             !progress.history.empty() &&
@@ -62,7 +62,7 @@ class Fitter {
     }
 
     MixtureFit close(MixtureProgress& progress) const {
-        const MixtureSums sums = accumulate(progress.model, rows_, layout_, threads_);
+        const MixtureSums sums = accumulate(progress.model, rows_, workers_);
         return {std::move(progress.model), sums.mean_log_likelihood(), std::move(progress.history),
                 progress.converged};
     }
@@ -73,11 +73,10 @@ class Fitter {
         return replace ? std::move(later) : std::move(earlier);
     }
 
-    const MatrixFView& rows_;
-    const PieceLayout& layout_;
+    const RowSource& rows_;
     int64_t clusters_;
     const MixtureOptions& options_;
-    int threads_;
+    const Workers& workers_;
     const StopToken& stop_;
     const std::function<void(const MixtureProgress&)>& report_;
     double least_variance_;
@@ -85,16 +84,14 @@ class Fitter {
 
 }  // namespace
 
-MixtureFit fit_mixture(const MatrixFView& rows, const PieceLayout& layout, int64_t clusters,
-                       const MixtureOptions& options, int threads, const StopToken& stop,
+MixtureFit fit_mixture(const RowSource& rows, int64_t clusters, const MixtureOptions& options,
+                       const Workers& workers, const StopToken& stop,
                        const std::function<void(const MixtureProgress&)>& report,
                        const MixtureProgress* resume_from) {
     if (options.max_iterations < 1 || options.restarts < 1) {
         throw std::invalid_argument("a mixture needs at least one iteration and one start");
     }
-    require_layout_of(rows, layout);
-    require_finite(rows);
-    const Fitter fitter(rows, layout, clusters, options, threads, stop, report);
+    const Fitter fitter(rows, clusters, options, workers, stop, report);
     return fitter.run(resume_from ? *resume_from : fitter.start(0, {}));
 }
 

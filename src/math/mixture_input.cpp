@@ -6,11 +6,11 @@
 
 namespace kinetome {
 
-void require_finite(const MatrixFView& rows) {
+void require_finite(const MatrixFView& rows, int64_t first_row) {
     for (int64_t i = 0; i < rows.rows(); ++i) {
         for (int64_t j = 0; j < rows.cols(); ++j) {
             if (!std::isfinite(rows(i, j))) {
-                throw std::invalid_argument("row " + std::to_string(i) + ", column " +
+                throw std::invalid_argument("row " + std::to_string(first_row + i) + ", column " +
                                             std::to_string(j) +
                                             " holds a value that is not finite");
             }
@@ -18,17 +18,21 @@ void require_finite(const MatrixFView& rows) {
     }
 }
 
-void require_layout_of(const MatrixFView& rows, const PieceLayout& layout) {
-    if (layout.rows() != rows.rows()) {
-        throw std::invalid_argument("a layout of " + std::to_string(layout.rows()) +
-                                    " rows was given for a matrix of " +
-                                    std::to_string(rows.rows()));
+void require_finite(const RowSource& rows, const Moments& moments) {
+    // Sums of finite floats are finite doubles: the moments tell of every value.
+    bool finite = true;
+    for (int64_t j = 0; j < moments.dimension(); ++j) {
+        finite = finite && std::isfinite(moments.mean[j]) && std::isfinite(moments.scatter(j, j));
+    }
+    if (finite) return;
+    for (const RowRange& piece : rows.layout().pieces) {
+        require_finite(rows.read(piece).view(), piece.first);
     }
 }
 
-void require_dimension_of(const MatrixFView& rows, int64_t dimension) {
-    if (rows.cols() != dimension || dimension == 0) {
-        throw std::invalid_argument("rows of " + std::to_string(rows.cols()) +
+void require_dimension_of(int64_t columns, int64_t dimension) {
+    if (columns != dimension || dimension == 0) {
+        throw std::invalid_argument("rows of " + std::to_string(columns) +
                                     " columns were given to a mixture in " +
                                     std::to_string(dimension) + " dimensions");
     }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinetome/base/parallel.h"
+#include "kinetome/base/piece_sum.h"
 
 namespace kinetome {
 namespace {
@@ -95,19 +95,24 @@ void merge(Moments& left, const Moments& right) {
     left.count += right.count;
 }
 
-Moments moments_of(const MatrixFView& rows, const PieceLayout& layout, int threads) {
-    if (layout.rows() != rows.rows()) {
-        throw std::invalid_argument("a layout of " + std::to_string(layout.rows()) +
-                                    " rows was given for a matrix of " +
-                                    std::to_string(rows.rows()));
-    }
+Moments moments_of(const RowSource& rows, const Workers& workers) {
     auto moments = sum_pieces<Moments>(
-        threads, layout,
-        [&](const RowRange& piece) {
-            return moments_of(rows.middleRows(piece.first, piece.size()));
-        },
+        workers, rows.layout(),
+        [&](const RowRange& piece) { return moments_of(rows.read(piece).view()); },
         [](Moments& left, const Moments& right) { merge(left, right); });
-    return moments ? *std::move(moments) : moments_of(rows);
+    return moments ? *std::move(moments) : moments_of(MatrixF(0, rows.columns()));
+}
+
+void pack(Packer& out, const Moments& moments) {
+    out.put(moments.count);
+    pack(out, moments.mean);
+    pack(out, moments.scatter);
+}
+
+void unpack(Unpacker& in, Moments& moments) {
+    moments.count = in.get<int64_t>();
+    unpack(in, moments.mean);
+    unpack(in, moments.scatter);
 }
 
 }  // namespace kinetome

@@ -114,6 +114,20 @@ MatrixF Pca::project(const MatrixFView& rows) const {
     return projected;
 }
 
+void pack(Packer& out, const Pca& pca) {
+    pack(out, pca.mean);
+    pack(out, pca.scale);
+    pack(out, pca.components);
+    pack(out, pca.variances);
+}
+
+void unpack(Unpacker& in, Pca& pca) {
+    unpack(in, pca.mean);
+    unpack(in, pca.scale);
+    unpack(in, pca.components);
+    unpack(in, pca.variances);
+}
+
 Pca fit_pca(const Moments& moments, const VectorD& floor, double share) {
     check(moments, floor, share);
     Pca pca;

@@ -91,4 +91,14 @@ AccessibilityMatrix accessibility(const Mixture& mixture, double tau, int thread
     return matrix;
 }
 
+void pack(Packer& out, const AccessibilityMatrix& matrix) {
+    out.put(matrix.letters());
+    pack(out, matrix.words());
+}
+
+void unpack(Unpacker& in, AccessibilityMatrix& matrix) {
+    matrix = AccessibilityMatrix(in.get<int64_t>());
+    unpack(in, matrix.words_);
+}
+
 }  // namespace kinetome

@@ -19,6 +19,19 @@ bool MotionString::breaks_after(int64_t j) const {
     return i + 1 == clip.size() || clip[i] != clip[i + 1];
 }
 
+void pack(Packer& out, const MotionString& string) {
+    for (const auto* values :
+         {&string.letters, &string.clip, &string.first_frame, &string.end_frame}) {
+        pack(out, *values);
+    }
+}
+
+void unpack(Unpacker& in, MotionString& string) {
+    for (auto* values : {&string.letters, &string.clip, &string.first_frame, &string.end_frame}) {
+        unpack(in, *values);
+    }
+}
+
 MotionString make_motion_string(std::span<const int32_t> frame_letters,
                                 std::span<const int64_t> clip_frames) {
     if (std::accumulate(clip_frames.begin(), clip_frames.end(), int64_t{0}) !=

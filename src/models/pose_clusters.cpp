@@ -58,9 +58,8 @@ int64_t cluster_count(const PoseClusterOptions& options, int64_t frames) {
     return counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
 }
 
-PoseClusters fit_pose_clusters(const MatrixFView& rows, const PieceLayout& layout,
-                               const PoseClusterOptions& options, int threads,
-                               const StopToken& stop,
+PoseClusters fit_pose_clusters(const RowSource& rows, const PoseClusterOptions& options,
+                               const Workers& workers, const StopToken& stop,
                                const std::function<void(const PoseClusterProgress&)>& report,
                                const PoseClusterProgress* resume_from) {
     const std::vector<int64_t> counts = cluster_counts(options, rows.rows());
@@ -72,7 +71,7 @@ PoseClusters fit_pose_clusters(const MatrixFView& rows, const PieceLayout& layou
     for (; progress.candidate < counts.size(); ++progress.candidate) {
         const int64_t clusters = counts[progress.candidate];
         MixtureFit fit = fit_mixture(
-            rows, layout, clusters, options.mixture, threads, stop,
+            rows, clusters, options.mixture, workers, stop,
             [&](const MixtureProgress& mixture) {
                 if (!report) return;
                 progress.mixture = mixture;
@@ -82,6 +81,35 @@ PoseClusters fit_pose_clusters(const MatrixFView& rows, const PieceLayout& layou
         enter(progress.best, std::move(fit), clusters, rows.rows());
     }
     return std::move(progress.best);
+}
+
+void pack(Packer& out, const PoseClusters& clusters) {
+    pack(out, clusters.fit);
+    out.put<uint64_t>(clusters.tried.size());
+    for (const TriedClusterCount& tried : clusters.tried) {
+        out.put(tried.clusters).put(tried.bayesian_information);
+    }
+}
+
+void unpack(Unpacker& in, PoseClusters& clusters) {
+    unpack(in, clusters.fit);
+    clusters.tried.clear();
+    for (auto left = in.get<uint64_t>(); left > 0; --left) {
+        const auto count = in.get<int64_t>();
+        clusters.tried.push_back({count, in.get<double>()});
+    }
+}
+
+void pack(Packer& out, const PoseClusterProgress& progress) {
+    out.put<uint64_t>(progress.candidate);
+    pack(out, progress.mixture);
+    pack(out, progress.best);
+}
+
+void unpack(Unpacker& in, PoseClusterProgress& progress) {
+    progress.candidate = in.get<uint64_t>();
+    unpack(in, progress.mixture);
+    unpack(in, progress.best);
 }
 
 }  // namespace kinetome

@@ -14,7 +14,7 @@ namespace {
 
 void check_against_reference(const Mixture& model, const MatrixF& rows) {
     const MixtureSums expected = reference_sums(model, rows);
-    const MixtureSums sums = accumulate(model, rows, layout_rows(rows.rows()), 1);
+    const MixtureSums sums = accumulate(model, MatrixRows(rows), 1);
     CHECK(sums.rows == rows.rows());
     const double magnitude = std::max(std::abs(expected.mean_log_likelihood()), 1.0);
     CHECK(std::abs(sums.mean_log_likelihood() - expected.mean_log_likelihood()) <=
@@ -82,11 +82,11 @@ TEST_CASE("products that a float cannot hold leave no row without a cluster") {
     Mixture model{MatrixD(2, 2), VectorD::Constant(2, 1e-26), VectorD::Constant(2, 0.5)};
     model.means.row(0).setConstant(-2e9);
     model.means.row(1).setConstant(2e9);
-    const MixtureSums sums = accumulate(model, rows, layout_rows(rows.rows()), 1);
+    const MixtureSums sums = accumulate(model, MatrixRows(rows), 1);
     CHECK(std::isfinite(sums.log_likelihood));
     CHECK(sums.responsibility[0] == Approx(20));
     CHECK(sums.responsibility[1] == Approx(20));
-    CHECK(likeliest_clusters(model, rows, 1).back() == 1);
+    CHECK(likeliest_clusters(model, MatrixRows(rows), 1).back() == 1);
 }
 
 TEST_CASE("the sums have the same bits on any number of threads") {
@@ -94,9 +94,9 @@ TEST_CASE("the sums have the same bits on any number of threads") {
     const Mixture model = random_mixture(rows, 50, 0.2, 1, 14);
     const PieceLayout layout = layout_rows(rows.rows());
     REQUIRE(layout.pieces.size() > 7);
-    const MixtureSums one = accumulate(model, rows, layout, 1);
+    const MixtureSums one = accumulate(model, MatrixRows(rows, layout), 1);
     for (const int threads : {2, 3, 7}) {
-        CHECK(same_bits(one, accumulate(model, rows, layout, threads)));
+        CHECK(same_bits(one, accumulate(model, MatrixRows(rows, layout), threads)));
     }
 }
 
@@ -106,18 +106,18 @@ TEST_CASE("sums of groups made apart and merged have the bits of those made toge
     const PieceLayout whole{{{0, 2500}, {2500, 4600}, {4600, 6700}, {6700, 9000}}, {0, 2, 4}};
     const PieceLayout first{{{0, 2500}, {2500, 4600}}, {0, 2}};
     const PieceLayout second{{{0, 2100}, {2100, 4400}}, {0, 2}};
-    MixtureSums merged = accumulate(model, rows.topRows(4600), first, 1);
-    merge(merged, accumulate(model, rows.bottomRows(4400), second, 2));
-    CHECK(same_bits(merged, accumulate(model, rows, whole, 2)));
+    MixtureSums merged = accumulate(model, MatrixRows(rows.topRows(4600), first), 1);
+    merge(merged, accumulate(model, MatrixRows(rows.bottomRows(4400), second), 2));
+    CHECK(same_bits(merged, accumulate(model, MatrixRows(rows, whole), 2)));
 }
 
 TEST_CASE("another cutting of the rows gives the same model within rounding") {
     const MatrixF rows = wandering_rows(5000, 7, 17);
     const Mixture model = random_mixture(rows, 30, 0.2, 1, 18);
-    MixtureSums halves = accumulate(model, rows.topRows(1777), layout_rows(1777), 1);
-    merge(halves, accumulate(model, rows.bottomRows(3223), layout_rows(3223), 1));
+    MixtureSums halves = accumulate(model, MatrixRows(rows.topRows(1777)), 1);
+    merge(halves, accumulate(model, MatrixRows(rows.bottomRows(3223)), 1));
     const Mixture a = estimate(model, halves, 1e-6);
-    const Mixture b = estimate(model, accumulate(model, rows, layout_rows(5000), 1), 1e-6);
+    const Mixture b = estimate(model, accumulate(model, MatrixRows(rows), 1), 1e-6);
     CHECK((a.means - b.means).cwiseAbs().maxCoeff() < 1e-5);
     CHECK((a.variances - b.variances).cwiseAbs().maxCoeff() < 1e-5);
     CHECK((a.weights - b.weights).cwiseAbs().maxCoeff() < 1e-6);
@@ -129,26 +129,30 @@ TEST_CASE("a value that is not finite is refused, naming its row") {
     const PieceLayout layout = layout_rows(rows.rows());
     rows(4321, 1) =
         GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
-    CHECK_THROWS_WITH(accumulate(model, rows, layout, 2), Contains("row 4321, column 1"));
-    CHECK_THROWS_WITH(likeliest_clusters(model, rows, 2), Contains("row 4321, column 1"));
-    CHECK_THROWS_WITH(start_mixture(rows, layout, 3, {}, 0, 1), Contains("row 4321, column 1"));
-    CHECK_THROWS_WITH(fit_mixture(rows, layout, 3, {}, 1), Contains("row 4321, column 1"));
+    CHECK_THROWS_WITH(accumulate(model, MatrixRows(rows, layout), 2),
+                      Contains("row 4321, column 1"));
+    CHECK_THROWS_WITH(likeliest_clusters(model, MatrixRows(rows), 2),
+                      Contains("row 4321, column 1"));
+    CHECK_THROWS_WITH(start_mixture(MatrixRows(rows, layout), 3, {}, 0, 1),
+                      Contains("row 4321, column 1"));
+    CHECK_THROWS_WITH(fit_mixture(MatrixRows(rows, layout), 3, {}, 1),
+                      Contains("row 4321, column 1"));
 }
 
 TEST_CASE("models and rows that do not fit together are refused") {
     const MatrixF rows = wandering_rows(100, 3, 21);
     Mixture model = random_mixture(rows, 4, 0.2, 1, 22);
-    CHECK_THROWS_AS(accumulate(model, rows, layout_rows(99), 1), std::invalid_argument);
-    CHECK_THROWS_AS(accumulate(model, rows.leftCols(2).eval(), layout_rows(100), 1),
+    CHECK_THROWS_AS(MatrixRows(rows, layout_rows(99)), std::invalid_argument);
+    CHECK_THROWS_AS(accumulate(model, MatrixRows(rows.leftCols(2).eval()), 1),
                     std::invalid_argument);
     model.variances[2] = 0;
-    CHECK_THROWS_WITH(accumulate(model, rows, layout_rows(100), 1), Contains("cluster 2"));
+    CHECK_THROWS_WITH(accumulate(model, MatrixRows(rows), 1), Contains("cluster 2"));
 }
 
 TEST_CASE("no rows have sums of nothing") {
     const MatrixF rows(0, 3);
     const Mixture model{MatrixD::Zero(2, 3), VectorD::Ones(2), VectorD::Constant(2, 0.5)};
-    const MixtureSums sums = accumulate(model, rows, layout_rows(0), 2);
+    const MixtureSums sums = accumulate(model, MatrixRows(rows), 2);
     CHECK(sums.rows == 0);
     CHECK(sums.responsibility == VectorD::Zero(2));
 }
@@ -156,7 +160,7 @@ TEST_CASE("no rows have sums of nothing") {
 TEST_CASE("the likeliest cluster is that of the densities, whatever their weights") {
     const MatrixF rows = wandering_rows(1500, 5, 23);
     const Mixture model = random_mixture(rows, 60, 0.1, 2, 24);
-    const std::vector<int32_t> letters = likeliest_clusters(model, rows, 3);
+    const std::vector<int32_t> letters = likeliest_clusters(model, MatrixRows(rows), 3);
     int64_t swayed_by_weight = 0;
     for (int64_t i = 0; i < rows.rows(); ++i) {
         int32_t best = 0, best_weighted = 0;
@@ -177,9 +181,10 @@ TEST_CASE("the likeliest cluster is that of the densities, whatever their weight
 TEST_CASE("a row's letter does not depend on the rows it is drawn with") {
     const MatrixF rows = scattered_rows(1000, 5, 25);
     const Mixture model = random_mixture(rows, 60, 0.1, 2, 26);
-    const std::vector<int32_t> together = likeliest_clusters(model, rows, 2);
+    const std::vector<int32_t> together = likeliest_clusters(model, MatrixRows(rows), 2);
     for (int64_t i = 0; i < rows.rows(); i += 7) {
-        CHECK(likeliest_clusters(model, rows.middleRows(i, 1), 1).front() == together[size_t(i)]);
+        CHECK(likeliest_clusters(model, MatrixRows(rows.middleRows(i, 1)), 1).front() ==
+              together[size_t(i)]);
     }
 }
 
@@ -188,5 +193,5 @@ TEST_CASE("of clusters that are equally likely the lowest is taken") {
     Mixture model{MatrixD::Zero(9, 2), VectorD::Ones(9), VectorD::Constant(9, 1.0 / 9)};
     model.means.row(0).setConstant(5);
     for (int64_t k = 1; k < 9; ++k) model.means(k, k % 2) = k < 5 ? 1 : -1;
-    CHECK(likeliest_clusters(model, rows, 1) == std::vector<int32_t>(20, 1));
+    CHECK(likeliest_clusters(model, MatrixRows(rows), 1) == std::vector<int32_t>(20, 1));
 }

@@ -50,13 +50,13 @@ TEST_CASE("the start draws the rows that sampling by plain distances draws") {
     const MatrixF rows = wandering_rows(count, 4, 1);
     MixtureOptions options;
     options.seed = seed;
-    const Mixture start = start_mixture(rows, layout_rows(count), clusters, options, restart, 1);
+    const Mixture start = start_mixture(MatrixRows(rows), clusters, options, restart, 1);
     CHECK(start.means == rows_at(rows, plain_start(rows, clusters, seed, uint64_t(restart))));
 }
 
 TEST_CASE("the start's variance is what is left of the rows about their nearest means") {
     const MatrixF rows = wandering_rows(3000, 3, 2);
-    const Mixture start = start_mixture(rows, layout_rows(3000), 25, {}, 0, 1);
+    const Mixture start = start_mixture(MatrixRows(rows), 25, {}, 0, 1);
     double left = 0;
     for (int64_t i = 0; i < rows.rows(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();
@@ -73,9 +73,9 @@ TEST_CASE("the start's variance is what is left of the rows about their nearest 
 TEST_CASE("the start has the same bits on any number of threads") {
     const MatrixF rows = wandering_rows(20'000, 5, 3);
     const PieceLayout layout = layout_rows(20'000);
-    const Mixture one = start_mixture(rows, layout, 80, {}, 0, 1);
+    const Mixture one = start_mixture(MatrixRows(rows, layout), 80, {}, 0, 1);
     for (const int threads : {2, 3, 7}) {
-        CHECK(same_bits(one, start_mixture(rows, layout, 80, {}, 0, threads)));
+        CHECK(same_bits(one, start_mixture(MatrixRows(rows, layout), 80, {}, 0, threads)));
     }
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("a start from a sample takes evenly spaced rows only") {
     for (int64_t i = 0; i < 1000; ++i) rows(i, 0) = float(i);
     MixtureOptions options;
     options.start_sample = 100;
-    const Mixture start = start_mixture(rows, layout_rows(1000), 100, options, 0, 1);
+    const Mixture start = start_mixture(MatrixRows(rows), 100, options, 0, 1);
     CHECK(start.clusters() == 100);
     for (int64_t k = 0; k < start.clusters(); ++k) CHECK(int64_t(start.means(k, 0)) % 10 == 0);
 }
@@ -92,7 +92,7 @@ TEST_CASE("a start from a sample takes evenly spaced rows only") {
 TEST_CASE("rows that coincide make one cluster, never two") {
     MatrixF rows(90, 2);
     for (int64_t i = 0; i < 90; ++i) rows.row(i) << float(i % 3), 1e4F;
-    const Mixture start = start_mixture(rows, layout_rows(90), 10, {}, 0, 1);
+    const Mixture start = start_mixture(MatrixRows(rows), 10, {}, 0, 1);
     CHECK(start.clusters() == 3);
     const VectorD column = start.means.col(0);
     CHECK(std::set<double>(column.begin(), column.end()) == std::set<double>{0, 1, 2});
@@ -101,9 +101,9 @@ TEST_CASE("rows that coincide make one cluster, never two") {
 
 TEST_CASE("a start is refused where there is nothing to start from") {
     const MatrixF rows = wandering_rows(5, 2, 4);
-    CHECK_THROWS_AS(start_mixture(rows, layout_rows(5), 6, {}, 0, 1), std::invalid_argument);
-    CHECK_THROWS_AS(start_mixture(rows, layout_rows(5), 0, {}, 0, 1), std::invalid_argument);
+    CHECK_THROWS_AS(start_mixture(MatrixRows(rows), 6, {}, 0, 1), std::invalid_argument);
+    CHECK_THROWS_AS(start_mixture(MatrixRows(rows), 0, {}, 0, 1), std::invalid_argument);
     MatrixF distant(2, 1);
     distant << -1e30F, 1e30F;
-    CHECK_THROWS_AS(start_mixture(distant, layout_rows(2), 1, {}, 0, 1), std::invalid_argument);
+    CHECK_THROWS_AS(start_mixture(MatrixRows(distant), 1, {}, 0, 1), std::invalid_argument);
 }

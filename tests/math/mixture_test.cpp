@@ -31,7 +31,7 @@ TEST_CASE("clusters far apart are found where they are") {
     MatrixD centres(4, 3);
     centres << 0, 0, 0, 20, 0, 0, 0, 20, 5, 20, 20, -7;
     const MatrixF rows = rows_around(centres, 8000);
-    const MixtureFit fit = fit_mixture(rows, layout_rows(rows.rows()), 4, {}, 2);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 4, {}, 2);
     CHECK(fit.converged);
     for (int64_t c = 0; c < 4; ++c) {
         int64_t nearest = 0;
@@ -45,7 +45,7 @@ TEST_CASE("clusters far apart are found where they are") {
 TEST_CASE("one cluster is the mean and the mean variance of the rows") {
     const MatrixF rows = wandering_rows(3000, 3, 1);
     const Moments moments = moments_of(rows);
-    const MixtureFit fit = fit_mixture(rows, layout_rows(3000), 1, {}, 1);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 1, {}, 1);
     CHECK((fit.model.means.row(0).transpose() - moments.mean).norm() < 1e-5);
     CHECK(fit.model.variances[0] == Approx(moments.scatter.trace() / 9000).epsilon(1e-5));
     CHECK(fit.model.weights[0] == 1);
@@ -56,7 +56,7 @@ TEST_CASE("the likelihood never falls from one iteration to the next") {
     MixtureOptions options;
     options.min_gain = -1;
     options.max_iterations = 40;
-    const MixtureFit fit = fit_mixture(rows, layout_rows(6000), 60, options, 2);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 60, options, 2);
     REQUIRE(fit.history.size() == 40);
     CHECK_FALSE(fit.converged);
     for (size_t i = 1; i < fit.history.size(); ++i) {
@@ -69,7 +69,7 @@ TEST_CASE("the likelihood reported is that of the model returned") {
     const MatrixF rows = wandering_rows(2000, 4, 3);
     MixtureOptions options;
     options.max_iterations = 3;
-    const MixtureFit fit = fit_mixture(rows, layout_rows(2000), 20, options, 1);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 20, options, 1);
     CHECK(fit.mean_log_likelihood ==
           Approx(reference_sums(fit.model, rows).mean_log_likelihood()).epsilon(1e-6));
     CHECK(fit.mean_log_likelihood > fit.history.back());
@@ -80,7 +80,7 @@ TEST_CASE("a fit has the same bits on any number of threads") {
     MixtureOptions options;
     options.max_iterations = 5;
     const auto fit = [&](int threads) {
-        return fit_mixture(rows, layout_rows(9000), 40, options, threads);
+        return fit_mixture(MatrixRows(rows), 40, options, threads);
     };
     const MixtureFit one = fit(1);
     for (const int threads : {2, 3, 7}) {
@@ -99,8 +99,8 @@ TEST_CASE("a fit interrupted after any iteration goes on as if nothing had happe
     options.min_gain = 0.02;
     options.restarts = 3;
     int reports = 0;
-    const MixtureFit whole =
-        fit_mixture(rows, layout, 30, options, 1, {}, [&](const MixtureProgress&) { ++reports; });
+    const MixtureFit whole = fit_mixture(MatrixRows(rows, layout), 30, options, 1, {},
+                                         [&](const MixtureProgress&) { ++reports; });
     REQUIRE(reports > 6);
     for (int stop_after = 1; stop_after <= reports; ++stop_after) {
         std::atomic<bool> stop{false};
@@ -110,10 +110,12 @@ TEST_CASE("a fit interrupted after any iteration goes on as if nothing had happe
             last = progress;
             stop = ++seen == stop_after;
         };
-        CHECK_THROWS_AS(fit_mixture(rows, layout, 30, options, 1, StopToken(stop), report),
-                        Interrupted);
+        CHECK_THROWS_AS(
+            fit_mixture(MatrixRows(rows, layout), 30, options, 1, StopToken(stop), report),
+            Interrupted);
         REQUIRE(seen == stop_after);
-        const MixtureFit resumed = fit_mixture(rows, layout, 30, options, 2, {}, {}, &last);
+        const MixtureFit resumed =
+            fit_mixture(MatrixRows(rows, layout), 30, options, 2, {}, {}, &last);
         CHECK(same_bits(resumed.model, whole.model));
         CHECK(resumed.history == whole.history);
         CHECK(resumed.mean_log_likelihood == whole.mean_log_likelihood);
@@ -128,13 +130,13 @@ TEST_CASE("of several starts the likeliest is kept") {
     options.max_iterations = 5;
     options.restarts = 4;
     std::vector<Mixture> ends(4);
-    const MixtureFit fit =
-        fit_mixture(rows, layout, 12, options, 1, {}, [&](const MixtureProgress& progress) {
+    const MixtureFit fit = fit_mixture(
+        MatrixRows(rows, layout), 12, options, 1, {}, [&](const MixtureProgress& progress) {
             ends[static_cast<size_t>(progress.restart)] = progress.model;
         });
     double best = -std::numeric_limits<double>::infinity();
     for (const Mixture& end : ends) {
-        best = std::max(best, accumulate(end, rows, layout, 1).mean_log_likelihood());
+        best = std::max(best, accumulate(end, MatrixRows(rows, layout), 1).mean_log_likelihood());
     }
     CHECK(fit.mean_log_likelihood == best);
     CHECK_FALSE(same_bits(ends[0], ends[1]));
@@ -145,14 +147,14 @@ TEST_CASE("a cluster without rows keeps its mean and weighs nothing") {
     Mixture model = random_mixture(rows, 3, 0.5, 1, 8);
     model.means.row(1).setConstant(1e6);
     const PieceLayout layout = layout_rows(500);
-    const MixtureSums sums = accumulate(model, rows, layout, 1);
+    const MixtureSums sums = accumulate(model, MatrixRows(rows, layout), 1);
     REQUIRE(sums.responsibility[1] == 0);
     const Mixture next = estimate(model, sums, 0.01);
     CHECK(next.means.row(1) == model.means.row(1));
     CHECK(next.variances[1] == 0.01);
     CHECK(next.weights[1] > 0);
     CHECK(next.weights[1] < 1e-300);
-    CHECK(std::isfinite(accumulate(next, rows, layout, 1).log_likelihood));
+    CHECK(std::isfinite(accumulate(next, MatrixRows(rows, layout), 1).log_likelihood));
 }
 
 TEST_CASE("no variance falls below its floor") {
@@ -160,7 +162,7 @@ TEST_CASE("no variance falls below its floor") {
     const Moments moments = moments_of(rows);
     MixtureOptions options;
     options.variance_floor = 0.01;
-    const MixtureFit fit = fit_mixture(rows, layout_rows(200), 150, options, 1);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 150, options, 1);
     const double floor = 0.01 * moments.scatter.trace() / 200 / 3;
     CHECK(least_variance(moments, options) == Approx(floor));
     CHECK(fit.model.variances.minCoeff() == Approx(floor));
@@ -169,7 +171,7 @@ TEST_CASE("no variance falls below its floor") {
 TEST_CASE("rows that are all equal make one cluster of finite likelihood") {
     const float value = GENERATE(0.0F, 1.0F, 12345.678F, -1e-12F);
     const MatrixF rows = MatrixF::Constant(100, 2, value);
-    const MixtureFit fit = fit_mixture(rows, layout_rows(100), 5, {}, 2);
+    const MixtureFit fit = fit_mixture(MatrixRows(rows), 5, {}, 2);
     CHECK(fit.model.clusters() == 1);
     CHECK(fit.model.means(0, 0) == Approx(double(value)));
     CHECK(fit.model.variances[0] > 0);

@@ -78,7 +78,7 @@ TEST_CASE("options that name no positive number of clusters are refused") {
 TEST_CASE("BIC finds the number of blobs and reports every number tried") {
     const MatrixF rows = three_blobs(600);
     const PoseClusters clusters =
-        fit_pose_clusters(rows, layout_rows(600), choose_by_bic({1, 2, 3, 6, 12}), 1);
+        fit_pose_clusters(MatrixRows(rows), choose_by_bic({1, 2, 3, 6, 12}), 1);
     CHECK(clusters.clusters() == 3);
     REQUIRE(clusters.tried.size() == 5);
     for (const TriedClusterCount& other : clusters.tried) {
@@ -98,7 +98,7 @@ TEST_CASE("a fit resumed after any iteration of any candidate ends in the same b
     options.mixture.min_gain = -1;
     std::vector<PoseClusterProgress> reports;
     const PoseClusters whole = fit_pose_clusters(
-        rows, layout, options, 1, {},
+        MatrixRows(rows, layout), options, 1, {},
         [&](const PoseClusterProgress& progress) { reports.push_back(progress); });
     REQUIRE(reports.size() == 3 * 2 * 6);
     CHECK(reports.front().candidate == 0);
@@ -106,7 +106,8 @@ TEST_CASE("a fit resumed after any iteration of any candidate ends in the same b
     CHECK(reports.back().best.tried.size() == 2);
     for (const PoseClusterProgress& progress : reports) {
         CAPTURE(progress.candidate, progress.mixture.restart, progress.mixture.iteration);
-        check_same(fit_pose_clusters(rows, layout, options, 1, {}, {}, &progress), whole);
+        check_same(fit_pose_clusters(MatrixRows(rows, layout), options, 1, {}, {}, &progress),
+                   whole);
     }
 }
 
@@ -119,22 +120,22 @@ TEST_CASE("a fit stops between iterations when asked to, and goes on from its la
     std::atomic<bool> asked{false};
     PoseClusterProgress last;
     int reports = 0;
-    CHECK_THROWS_AS(fit_pose_clusters(rows, layout, options, 1, StopToken(asked),
+    CHECK_THROWS_AS(fit_pose_clusters(MatrixRows(rows, layout), options, 1, StopToken(asked),
                                       [&](const PoseClusterProgress& progress) {
                                           last = progress;
                                           asked = ++reports == 7;
                                       }),
                     Interrupted);
     CHECK(reports == 7);
-    check_same(fit_pose_clusters(rows, layout, options, 1, {}, {}, &last),
-               fit_pose_clusters(rows, layout, options, 1));
+    check_same(fit_pose_clusters(MatrixRows(rows, layout), options, 1, {}, {}, &last),
+               fit_pose_clusters(MatrixRows(rows, layout), options, 1));
 }
 
 TEST_CASE("one frame is one cluster, no frames are refused") {
     const PoseClusters clusters =
-        fit_pose_clusters(three_blobs(1), layout_rows(1), PoseClusterOptions{}, 1);
+        fit_pose_clusters(MatrixRows(three_blobs(1)), PoseClusterOptions{}, 1);
     CHECK(clusters.clusters() == 1);
     CHECK(clusters.fit.model.means.allFinite());
-    CHECK_THROWS_AS(fit_pose_clusters(three_blobs(0), layout_rows(0), PoseClusterOptions{}, 1),
+    CHECK_THROWS_AS(fit_pose_clusters(MatrixRows(three_blobs(0)), PoseClusterOptions{}, 1),
                     std::invalid_argument);
 }

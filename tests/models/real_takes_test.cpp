@@ -68,10 +68,9 @@ TEST_CASE("exercises of 14_14 at 200 clusters give a string of about 403 letters
     options.count_rule = ClusterCountRule::given;
     options.clusters = 200;
     options.mixture.min_gain = 1e-3;
-    const PoseClusters clusters =
-        fit_pose_clusters(projected, layout_rows(projected.rows()), options, 2);
-    const MotionString string =
-        make_motion_string(likeliest_clusters(clusters.fit.model, projected, 2), takes.clip_frames);
+    const PoseClusters clusters = fit_pose_clusters(MatrixRows(projected), options, 2);
+    const MotionString string = make_motion_string(
+        likeliest_clusters(clusters.fit.model, MatrixRows(projected), 2), takes.clip_frames);
 
     CHECK(string.size() > 403 / 1.3);
     CHECK(string.size() < 403 * 1.3);

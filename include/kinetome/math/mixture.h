@@ -6,10 +6,12 @@
 #include <functional>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/matrix.h"
-#include "kinetome/base/pieces.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/base/stop.h"
 #include "kinetome/math/moments.h"
+#include "kinetome/math/row_source.h"
 
 namespace kinetome {
 
@@ -63,10 +65,9 @@ struct MixtureProgress {
 };
 
 /// E step over the rows (n × d): blocks of float32 products, sums in double, in the layout's fixed
-/// tree; no memory in n × κ. Throws std::invalid_argument when a value is not finite, naming its
-/// row, when a variance or weight is not positive, and when shapes differ.
-MixtureSums accumulate(const Mixture& model, const MatrixFView& rows, const PieceLayout& layout,
-                       int threads);
+/// tree, the same at every rank; no memory in n × κ. Throws std::invalid_argument when a value is
+/// not finite, naming its row, when a variance or weight is not positive, and when shapes differ.
+MixtureSums accumulate(const Mixture& model, const RowSource& rows, const Workers& workers);
 void merge(MixtureSums& left, const MixtureSums& right);
 
 /// M step. A cluster without responsibility keeps its mean and takes the floor's variance and the
@@ -78,8 +79,12 @@ Mixture estimate(const Mixture& model, const MixtureSums& sums, double least_var
 /// are the mean of D² per dimension that the last draw leaves, no less than the floor.
 /// Throws std::invalid_argument when there are fewer rows than clusters. Rows that coincide may
 /// leave fewer distinct means than κ: the result then has that many clusters.
-Mixture start_mixture(const MatrixFView& rows, const PieceLayout& layout, int64_t clusters,
-                      const MixtureOptions& options, int restart, int threads);
+/// Ranks share the rows drawn from; each holds its part of them in memory (start_bytes).
+Mixture start_mixture(const RowSource& rows, int64_t clusters, const MixtureOptions& options,
+                      int restart, const Workers& workers);
+
+/// Memory that the start of a fit takes at each of `ranks` ranks.
+uint64_t start_bytes(int64_t rows, int64_t columns, const MixtureOptions& options, int ranks);
 
 /// The absolute floor of the variances: the option's share of the mean per-dimension variance, and
 /// never less than what the rounding of the values to float makes of a point.
@@ -87,17 +92,27 @@ double least_variance(const Moments& moments, const MixtureOptions& options);
 
 /// The whole fit. `report` is called after every iteration (for checkpoints and logs); give
 /// `resume_from` what it last received to go on as if nothing had happened, bit for bit.
-/// Stops with Interrupted between iterations.
-MixtureFit fit_mixture(const MatrixFView& rows, const PieceLayout& layout, int64_t clusters,
-                       const MixtureOptions& options, int threads, const StopToken& stop = {},
+/// Stops with Interrupted between iterations. Every rank reports and returns the same.
+MixtureFit fit_mixture(const RowSource& rows, int64_t clusters, const MixtureOptions& options,
+                       const Workers& workers, const StopToken& stop = {},
                        const std::function<void(const MixtureProgress&)>& report = {},
                        const MixtureProgress* resume_from = nullptr);
 
 /// The cluster under which each row is likeliest, *without* the mixing weight ("maximises its
-/// likelihood", S1 §3.2); ties to the lowest cluster.
-std::vector<int32_t> likeliest_clusters(const Mixture& model, const MatrixFView& rows, int threads);
+/// likelihood", S1 §3.2); ties to the lowest cluster. n, the same at every rank.
+std::vector<int32_t> likeliest_clusters(const Mixture& model, const RowSource& rows,
+                                        const Workers& workers);
 
 /// Bayesian information criterion of a fit, lower is better: κ(d + 2) - 1 parameters.
 double bayesian_information(const MixtureFit& fit, int64_t rows);
+
+void pack(Packer& out, const Mixture& mixture);
+void unpack(Unpacker& in, Mixture& mixture);
+void pack(Packer& out, const MixtureSums& sums);
+void unpack(Unpacker& in, MixtureSums& sums);
+void pack(Packer& out, const MixtureFit& fit);
+void unpack(Unpacker& in, MixtureFit& fit);
+void pack(Packer& out, const MixtureProgress& progress);
+void unpack(Unpacker& in, MixtureProgress& progress);
 
 }  // namespace kinetome

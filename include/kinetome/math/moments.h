@@ -3,8 +3,10 @@
 
 #include <cstdint>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/matrix.h"
-#include "kinetome/base/pieces.h"
+#include "kinetome/base/packing.h"
+#include "kinetome/math/row_source.h"
 
 namespace kinetome {
 
@@ -24,7 +26,10 @@ Moments moments_of(const MatrixFView& rows);
 /// dimensions differ.
 void merge(Moments& left, const Moments& right);
 
-/// Moments of a whole matrix, over its pieces in their fixed tree.
-Moments moments_of(const MatrixFView& rows, const PieceLayout& layout, int threads);
+/// Moments of all rows, over their pieces in the fixed tree; the same at every rank.
+Moments moments_of(const RowSource& rows, const Workers& workers);
+
+void pack(Packer& out, const Moments& moments);
+void unpack(Unpacker& in, Moments& moments);
 
 }  // namespace kinetome

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kinetome/base/matrix.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/math/moments.h"
 
 namespace kinetome {
@@ -23,6 +24,9 @@ struct Pca {
     /// rows (n × d) → n × D, row by row in double, rounded once to float.
     MatrixF project(const MatrixFView& rows) const;
 };
+
+void pack(Packer& out, const Pca& pca);
+void unpack(Unpacker& in, Pca& pca);
 
 /// Keeps the fewest components that hold at least `share` (0, 1] of the total variance (at least
 /// one). `floor` (d, > 0) is the least scale of each feature: without it features that hardly move

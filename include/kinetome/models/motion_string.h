@@ -25,6 +25,9 @@ struct MotionString {
     bool breaks_after(int64_t j) const;
 };
 
+void pack(Packer& out, const MotionString& string);
+void unpack(Unpacker& in, MotionString& string);
+
 /// `frame_letters` holds a letter a frame, the clips one after another; `clip_frames` their
 /// lengths.
 MotionString make_motion_string(std::span<const int32_t> frame_letters,

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "kinetome/base/matrix.h"
-#include "kinetome/base/pieces.h"
 #include "kinetome/base/stop.h"
 #include "kinetome/math/mixture.h"
 
@@ -55,13 +54,18 @@ struct PoseClusterProgress {
     PoseClusters best;        ///< of the candidates before it; tried is empty in the first
 };
 
+void pack(Packer& out, const PoseClusters& clusters);
+void unpack(Unpacker& in, PoseClusters& clusters);
+void pack(Packer& out, const PoseClusterProgress& progress);
+void unpack(Unpacker& in, PoseClusterProgress& progress);
+
 /// Fits the mixture to projected pose vectors (n × D) for every κ of cluster_counts and keeps the
 /// one of lowest Bayesian information criterion, ties to the first. `report` is called after every
 /// iteration; give `resume_from` what it last received to go on as if nothing had happened, bit
-/// for bit. Stops with Interrupted between iterations. Throws std::invalid_argument without frames.
-PoseClusters fit_pose_clusters(const MatrixFView& rows, const PieceLayout& layout,
-                               const PoseClusterOptions& options, int threads,
-                               const StopToken& stop = {},
+/// for bit. Stops with Interrupted between iterations. Every rank reports and returns the same.
+/// Throws std::invalid_argument without frames.
+PoseClusters fit_pose_clusters(const RowSource& rows, const PoseClusterOptions& options,
+                               const Workers& workers, const StopToken& stop = {},
                                const std::function<void(const PoseClusterProgress&)>& report = {},
                                const PoseClusterProgress* resume_from = nullptr);
 
@@ -90,6 +94,7 @@ class AccessibilityMatrix {
 
   private:
     friend AccessibilityMatrix accessibility(const Mixture&, double, int);
+    friend void unpack(Unpacker&, AccessibilityMatrix&);
 
     static constexpr int32_t bits_per_word = 64;
     size_t word_of(int32_t a, int32_t b) const {
@@ -103,6 +108,9 @@ class AccessibilityMatrix {
     int64_t words_per_row_ = 0;
     std::vector<uint64_t> words_;
 };
+
+void pack(Packer& out, const AccessibilityMatrix& matrix);
+void unpack(Unpacker& in, AccessibilityMatrix& matrix);
 
 /// A[a, b] = 1 if d(a, b) <= tau                                                     (S1 Eq. 2)
 AccessibilityMatrix accessibility(const Mixture& mixture, double tau, int threads);
