@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "kinetome/base/error.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/run/meter.h"
 #include "kinetome/stages/disk_need.h"
+#include "kinetome/stages/work_share.h"
 
 namespace kinetome {
 namespace {
@@ -37,13 +39,22 @@ StageTask task_of(const RunPlan& plan, const PlannedWork& work, const FinishedPl
     return task;
 }
 
-FinishedWork make(const RunPlan& plan, const PlannedWork& work, const StageTask& task,
-                  const Workspace& workspace, const Resources& resources, const Log& log,
-                  const StopToken& stop) {
-    log.info("{}: to be made: {}", work.file_name, workspace.why_missing(work.file_name, work.key));
+/// Makes an artifact, alone or together with the other ranks; rank 0 of those who make it has the
+/// result.
+std::optional<FinishedWork> make(const RunPlan& plan, const PlannedWork& work,
+                                 const StageTask& task, const Execution& execution,
+                                 Communicator* ranks) {
+    const Workspace& workspace = execution.workspace;
+    const Log& log = execution.log;
+    const StageContext context{plan.survey, plan.shards, plan.options,   execution.resources,
+                               workspace,   log,         execution.stop, ranks};
+    if (context.is_root()) {
+        log.info("{}: to be made: {}", work.file_name,
+                 workspace.why_missing(work.file_name, work.key));
+    }
     const Meter meter;
-    StageResult result = work.stage->make(
-        {plan.survey, plan.shards, plan.options, resources, workspace, log, stop}, task);
+    StageResult result = work.stage->make(context, task);
+    if (!context.is_root()) return std::nullopt;
     Receipt receipt;
     receipt.stage = work.stage->name;
     receipt.shard = work.shard ? work.shard->cut : "";
@@ -54,6 +65,81 @@ FinishedWork make(const RunPlan& plan, const PlannedWork& work, const StageTask&
     log.info("{}: made in {:.2f} s, {}", work.file_name, receipt.cost.seconds,
              describe_bytes(receipt.file.bytes));
     return workspace.commit(std::move(receipt));
+}
+
+void pack(Packer& out, const FinishedWork& work) {
+    out.put(std::string_view(write_receipt(work.receipt)))
+        .put(std::string_view(work.path.native()));
+    out.put<uint8_t>(work.from_generation);
+}
+
+FinishedWork unpack_work(Unpacker& in) {
+    const std::string receipt = in.get_text();
+    const std::filesystem::path path = in.get_text();
+    return {parse_receipt(receipt, path), path, in.get<uint8_t>() != 0};
+}
+
+/// The work of a stage that is selected and not finished: positions in the plan.
+std::vector<size_t> work_to_do(const RunPlan& plan, const StageRow& stage,
+                               const Selection& selection, const FinishedPlan& finished,
+                               const Execution& execution) {
+    std::vector<size_t> to_do;
+    for (size_t i = 0; i < plan.work.size(); ++i) {
+        const PlannedWork& work = plan.work[i];
+        if (work.stage != &stage || !is_selected(plan, work, selection)) continue;
+        if (!finished[i]) {
+            to_do.push_back(i);
+        } else if (execution.ranks.is_root()) {
+            execution.log.info("{}: reused from {}: its key is complete", work.file_name,
+                               finished[i]->from_generation
+                                   ? "generation " + execution.workspace.last()->id()
+                                   : "the run in progress");
+        }
+    }
+    return to_do;
+}
+
+/// Each shard by one rank; then all know of all.
+void make_shards(const RunPlan& plan, const std::vector<size_t>& to_do, FinishedPlan& finished,
+                 const Execution& execution) {
+    std::vector<int64_t> frames;
+    for (const size_t i : to_do) frames.push_back(plan.work[i].shard->claimed_frames);
+    const std::vector<int> owners = share_out(frames, execution.ranks.size(), false);
+    Packer made;
+    for (size_t i = 0; i < to_do.size(); ++i) {
+        if (owners[i] != execution.ranks.rank()) continue;
+        execution.stop.check();
+        const PlannedWork& work = plan.work[to_do[i]];
+        const StageTask task = task_of(plan, work, finished, execution.workspace);
+        finished[to_do[i]] = make(plan, work, task, execution, nullptr);
+        pack(made, *finished[to_do[i]]);
+    }
+    const auto brought = execution.ranks.gather_to_all(made.take());
+    for (int rank = 0; rank < execution.ranks.size(); ++rank) {
+        if (rank == execution.ranks.rank()) continue;
+        Unpacker in(brought[static_cast<size_t>(rank)]);
+        for (size_t i = 0; i < to_do.size(); ++i) {
+            if (owners[i] != rank) continue;
+            const FinishedWork& work = finished[to_do[i]].emplace(unpack_work(in));
+            if (!execution.ranks.is_root()) continue;
+            execution.log.info("{}: made by rank {} in {:.2f} s, {}", work.receipt.file.file_name,
+                               rank, work.receipt.cost.seconds,
+                               describe_bytes(work.receipt.file.bytes));
+        }
+    }
+}
+
+void make_together(const RunPlan& plan, size_t position, FinishedPlan& finished,
+                   const Execution& execution) {
+    execution.stop.check();
+    const PlannedWork& work = plan.work[position];
+    const StageTask task = task_of(plan, work, finished, execution.workspace);
+    Communicator* ranks = execution.ranks.size() > 1 ? &execution.ranks : nullptr;
+    finished[position] = make(plan, work, task, execution, ranks);
+    Packer made;
+    if (finished[position]) pack(made, *finished[position]);
+    Unpacker in(execution.ranks.broadcast(made.take()));
+    if (!finished[position]) finished[position] = unpack_work(in);
 }
 
 }  // namespace
@@ -88,21 +174,34 @@ FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,
 }
 
 FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
-                       const Workspace& workspace, const Resources& resources, const Log& log,
-                       const StopToken& stop) {
-    require_room(plan, finished, selection, workspace);
-    for (size_t i = 0; i < plan.work.size(); ++i) {
-        const PlannedWork& work = plan.work[i];
-        if (!is_selected(plan, work, selection)) continue;
-        if (finished[i]) {
-            log.info("{}: reused from {}: its key is complete", work.file_name,
-                     finished[i]->from_generation ? "generation " + workspace.last()->id()
-                                                  : "the run in progress");
-            continue;
+                       const Execution& execution) {
+    if (execution.ranks.is_root()) require_room(plan, finished, selection, execution.workspace);
+    for (const StageRow& stage : stage_table()) {
+        const auto to_do = work_to_do(plan, stage, selection, finished, execution);
+        if (to_do.empty()) continue;
+        if (stage.sharded) {
+            make_shards(plan, to_do, finished, execution);
+        } else {
+            make_together(plan, to_do.front(), finished, execution);
         }
-        stop.check();
-        finished[i] = make(plan, work, task_of(plan, work, finished, workspace), workspace,
-                           resources, log, stop);
+    }
+    return finished;
+}
+
+std::string pack_finished(const FinishedPlan& finished) {
+    Packer out;
+    for (const auto& work : finished) {
+        out.put<uint8_t>(work.has_value());
+        if (work) pack(out, *work);
+    }
+    return out.take();
+}
+
+FinishedPlan unpack_finished(std::string bytes) {
+    FinishedPlan finished;
+    for (Unpacker in(std::move(bytes)); in.left() > 0;) {
+        const bool is_finished = in.get<uint8_t>() != 0;
+        finished.push_back(is_finished ? std::optional(unpack_work(in)) : std::nullopt);
     }
     return finished;
 }

@@ -6,8 +6,9 @@
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/stages/pose_cluster_file.h"
 #include "kinetome/stages/pose_rows.h"
-#include "kinetome/stages/projection.h"
+#include "kinetome/stages/projected_rows.h"
 #include "kinetome/stages/stage.h"
+#include "kinetome/stages/work_share.h"
 #include "kinetome/store/catalog.h"
 
 namespace kinetome {
@@ -20,19 +21,33 @@ struct PartitionString {
     int64_t lambda = 0;
 };
 
+void pack(Packer& out, const PartitionString& spelled) {
+    pack(out, spelled.string);
+    pack(out, spelled.accessibility);
+    out.put(spelled.tau).put(spelled.lambda);
+}
+
+void unpack(Unpacker& in, PartitionString& spelled) {
+    unpack(in, spelled.string);
+    unpack(in, spelled.accessibility);
+    spelled.tau = in.get<double>();
+    spelled.lambda = in.get<int64_t>();
+}
+
+/// Of a partition that all ranks work on, rank 0 has the result.
 PartitionString spell(const StageContext& context, const PosePartition& partition,
-                      const StoredPoseClusters& model) {
-    const int threads = context.resources.threads;
+                      const StoredPoseClusters& model, const Workers& workers) {
     const StringOptions& options = context.options.motion_strings;
-    const MatrixF rows = project_rows(partition, model.pca, threads, context.stop);
+    const ProjectedRows rows(partition, model.pca, workers, 0, context.stop);
+    const std::vector<int32_t> letters = likeliest_clusters(model.mixture, rows, workers);
+    PartitionString result;
+    if (!workers.is_root()) return result;
     std::vector<int64_t> frames;
     for (const PartitionClip& clip : partition.clips) frames.push_back(clip.place.pose_rows);
-
-    PartitionString result;
-    result.string = make_motion_string(likeliest_clusters(model.mixture, rows, threads), frames);
+    result.string = make_motion_string(letters, frames);
     result.tau =
         options.tau > 0 ? options.tau : median_adjacent_distance(result.string, model.mixture);
-    result.accessibility = accessibility(model.mixture, result.tau, threads);
+    result.accessibility = accessibility(model.mixture, result.tau, workers.threads);
     result.lambda = longest_substring(
         result.string, options.longest_submotion * context.options.features.pose_rate);
     return result;
@@ -115,19 +130,28 @@ void write(ArtifactWriter& file, const PosePartition& partition, const Partition
 
 StageResult make_motion_strings(const StageContext& context, const StageTask& task) {
     const ArtifactReader models = context.workspace.open(*task.inputs_of("pose_clusters").front());
+    auto partitions = pose_partitions(context, task.inputs_of("features"));
+    std::erase_if(partitions, [&](const PosePartition& partition) {  // skipped there, with a reason
+        return !models.contains(partition.path + "/means");
+    });
+    const auto spelled = for_partitions<PartitionString>(
+        context.workers(), partitions, [&](size_t i, const Workers& workers) {
+            return spell(context, partitions[i], read_pose_clusters(models, partitions[i].path),
+                         workers);
+        });
+    StageResult result;
+    if (!context.is_root()) return result;
     ArtifactWriter file(task.output, task.header,
                         parse_compression(context.options.frames.compression));
-    for (const PosePartition& partition : pose_partitions(context, task.inputs_of("features"))) {
-        if (!models.contains(partition.path + "/means")) continue;  // skipped there, with a reason
-        const auto spelled = spell(context, partition, read_pose_clusters(models, partition.path));
-        write(file, partition, spelled);
+    for (size_t i = 0; i < partitions.size(); ++i) {
+        write(file, partitions[i], spelled[i]);
+        const int64_t letters = spelled[i].string.size();
         context.log.info("motion_strings {}: {} letters, {:.1f} frames a letter, τ {:.2f}, λ {}",
-                         partition.path, spelled.string.size(),
-                         static_cast<double>(partition.rows()) /
-                             static_cast<double>(std::max<int64_t>(1, spelled.string.size())),
-                         spelled.tau, spelled.lambda);
+                         partitions[i].path, letters,
+                         static_cast<double>(partitions[i].rows()) /
+                             static_cast<double>(std::max<int64_t>(1, letters)),
+                         spelled[i].tau, spelled[i].lambda);
     }
-    StageResult result;
     result.file = file.close();
     return result;
 }

@@ -1,106 +1,42 @@
-// pose_clusters: moments → principal components → mixture of isotropic Gaussians, a partition
-// after the other, with a checkpoint after every iteration of EM (S1 §3.2).
+// pose_clusters: moments → principal components → mixture of isotropic Gaussians, by partition,
+// with a checkpoint after every iteration of EM (S1 §3.2).
 #include <fmt/format.h>
 
-#include "kinetome/base/parallel.h"
+#include <bit>
+
+#include "kinetome/base/piece_sum.h"
 #include "kinetome/run/checkpoint.h"
 #include "kinetome/stages/pose_cluster_file.h"
 #include "kinetome/stages/pose_rows.h"
-#include "kinetome/stages/projection.h"
+#include "kinetome/stages/projected_rows.h"
 #include "kinetome/stages/stage.h"
+#include "kinetome/stages/work_share.h"
 
 namespace kinetome {
 namespace {
 
-void put(CheckpointWriter& out, const MatrixD& matrix) {
-    out.put<int64_t>(matrix.rows());
-    out.put(std::span<const double>(matrix.data(), static_cast<size_t>(matrix.size())));
+/// What is known of a partition in the end; nothing was fitted where there are fewer than two rows.
+struct FittedPartition {
+    Pca pca;
+    PoseClusters clusters;
+
+    bool is_fitted() const { return clusters.clusters() > 0; }
+};
+
+void pack(Packer& out, const FittedPartition& fitted) {
+    pack(out, fitted.pca);
+    pack(out, fitted.clusters);
 }
 
-MatrixD get_matrix(CheckpointReader& in) {
-    const auto rows = in.get<int64_t>();
-    const auto values = in.get_all<double>();
-    const auto columns = rows ? static_cast<int64_t>(values.size()) / rows : 0;
-    return Eigen::Map<const MatrixD>(values.data(), rows, columns);
+void unpack(Unpacker& in, FittedPartition& fitted) {
+    unpack(in, fitted.pca);
+    unpack(in, fitted.clusters);
 }
 
-void put(CheckpointWriter& out, const Mixture& mixture) {
-    put(out, mixture.means);
-    put(out, MatrixD(mixture.variances));
-    put(out, MatrixD(mixture.weights));
-}
-
-Mixture get_mixture(CheckpointReader& in) {
-    Mixture mixture;
-    mixture.means = get_matrix(in);
-    mixture.variances = get_matrix(in);
-    mixture.weights = get_matrix(in);
-    return mixture;
-}
-
-void put(CheckpointWriter& out, const MixtureFit& fit) {
-    put(out, fit.model);
-    out.put(fit.mean_log_likelihood);
-    out.put(std::span<const double>(fit.history));
-    out.put<uint8_t>(fit.converged);
-}
-
-MixtureFit get_fit(CheckpointReader& in) {
-    MixtureFit fit;
-    fit.model = get_mixture(in);
-    fit.mean_log_likelihood = in.get<double>();
-    fit.history = in.get_all<double>();
-    fit.converged = in.get<uint8_t>();
-    return fit;
-}
-
-void save(const PoseClusterProgress& progress, const std::filesystem::path& path) {
-    CheckpointWriter out;
-    out.put<uint64_t>(progress.candidate);
-    const MixtureProgress& mixture = progress.mixture;
-    out.put<int32_t>(mixture.restart).put<int32_t>(mixture.iteration);
-    out.put(mixture.mean_log_likelihood).put(std::span<const double>(mixture.history));
-    out.put<uint8_t>(mixture.converged);
-    put(out, mixture.model);
-    put(out, mixture.best);
-    put(out, progress.best.fit);
-    out.put<uint64_t>(progress.best.tried.size());
-    for (const TriedClusterCount& tried : progress.best.tried) {
-        out.put(tried.clusters).put(tried.bayesian_information);
-    }
-    out.save(path);
-}
-
-/// Nothing when there is none, or when another version of this program made it.
-std::optional<PoseClusterProgress> load(const std::filesystem::path& path) try {
-    auto in = CheckpointReader::open(path);
-    if (!in) return std::nullopt;
-    PoseClusterProgress progress;
-    progress.candidate = in->get<uint64_t>();
-    MixtureProgress& mixture = progress.mixture;
-    mixture.restart = in->get<int32_t>();
-    mixture.iteration = in->get<int32_t>();
-    mixture.mean_log_likelihood = in->get<double>();
-    mixture.history = in->get_all<double>();
-    mixture.converged = in->get<uint8_t>();
-    mixture.model = get_mixture(*in);
-    mixture.best = get_fit(*in);
-    progress.best.fit = get_fit(*in);
-    const auto tried = in->get<uint64_t>();
-    for (uint64_t i = 0; i < tried; ++i) {
-        TriedClusterCount one;
-        one.clusters = in->get<int64_t>();
-        one.bayesian_information = in->get<double>();
-        progress.best.tried.push_back(one);
-    }
-    return progress;
-} catch (const StoreError&) {
-    return std::nullopt;
-}
-
-Pca principal_components(const StageContext& context, const PosePartition& partition) {
+Pca principal_components(const StageContext& context, const PosePartition& partition,
+                         const Workers& workers) {
     const auto moments = sum_pieces<Moments>(
-        context.resources.threads, partition.layout,
+        workers, partition.layout,
         [&](const RowRange& piece) {
             context.stop.check();
             return moments_of(partition.read(piece));
@@ -118,17 +54,78 @@ PoseClusterOptions resolved(PoseClusterOptions options) {
     return options;
 }
 
-PoseClusters cluster(const StageContext& context, const PosePartition& partition,
-                     const MatrixF& rows, const std::filesystem::path& checkpoint) {
-    const auto earlier = load(checkpoint);
+/// What rank 0 finds of an earlier run, at every rank.
+std::optional<PoseClusterProgress> earlier_progress(const std::filesystem::path& checkpoint,
+                                                    const Workers& workers) {
+    std::string bytes;
+    if (workers.is_root()) bytes = load_checkpoint(checkpoint).value_or("");
+    if (workers.rank_count() > 1) bytes = workers.ranks->broadcast(std::move(bytes));
+    if (bytes.empty()) return std::nullopt;
+    try {
+        return unpacked<PoseClusterProgress>(std::move(bytes));
+    } catch (const std::out_of_range&) {  // another version of this program made it
+        return std::nullopt;
+    }
+}
+
+/// Memory that fitting takes at a rank beside the rows it keeps: the start's sample, and the sums
+/// of pieces at work or waiting for their sibling.
+uint64_t fitting_bytes(const PosePartition& partition, int64_t columns,
+                       const PoseClusterOptions& options, const Workers& workers) {
+    const int64_t clusters = cluster_count(options, partition.rows());
+    const auto sum_bytes = static_cast<uint64_t>(clusters * (columns + 2)) * sizeof(double);
+    const auto waiting = 2 * std::bit_width(partition.layout.pieces.size());
+    const auto sums = static_cast<uint64_t>(2 * workers.threads + waiting + 4);
+    return start_bytes(partition.rows(), columns, options.mixture, workers.rank_count()) +
+           sums * sum_bytes;
+}
+
+/// Of the memory granted, what is left for keeping rows.
+uint64_t bytes_for_rows(const StageContext& context, const PosePartition& partition,
+                        int64_t columns, const PoseClusterOptions& options,
+                        const Workers& workers) {
+    constexpr uint64_t reserve = 32
+                                 << 20;  // for readers, logs and what the heap does not give back
+    const uint64_t granted = context.resources.memory_bytes;
+    const uint64_t needed =
+        resident_bytes() + fitting_bytes(partition, columns, options, workers) + reserve;
+    if (needed > granted) {
+        throw UsageError(fmt::format(
+            "pose_clusters {}: needs {} of memory at each rank, but {} are granted ({}): raise "
+            "--memory, lower --start-sample, or use more ranks",
+            partition.path, describe_bytes(needed), describe_bytes(granted),
+            context.resources.memory_source));
+    }
+    return granted - needed;
+}
+
+FittedPartition fit(const StageContext& context, const PosePartition& partition,
+                    const std::filesystem::path& checkpoint, const Workers& workers) {
+    if (partition.rows() < 2) return {};
+    const PoseClusterOptions options = resolved(context.options.pose_clusters);
+    FittedPartition fitted;
+    fitted.pca = principal_components(context, partition, workers);
+    const ProjectedRows rows(
+        partition, fitted.pca, workers,
+        bytes_for_rows(context, partition, fitted.pca.dimension(), options, workers), context.stop);
+    const auto earlier = earlier_progress(checkpoint, workers);
     if (earlier) {
         context.log.info("pose_clusters {}: goes on after iteration {}", partition.path,
                          earlier->mixture.iteration);
     }
-    return fit_pose_clusters(
-        rows, partition.layout, resolved(context.options.pose_clusters), context.resources.threads,
-        context.stop, [&](const PoseClusterProgress& progress) { save(progress, checkpoint); },
+    fitted.clusters = fit_pose_clusters(
+        rows, options, workers, context.stop,
+        [&](const PoseClusterProgress& progress) {
+            if (workers.is_root()) save_checkpoint(checkpoint, packed(progress));
+        },
         earlier ? &*earlier : nullptr);
+    context.log.info(
+        "pose_clusters {}: {} frames, {} components ({:.1f} % of variance), {} clusters, "
+        "mean log-likelihood {:.4f} after {} iterations",
+        partition.path, partition.rows(), fitted.pca.dimension(), 100 * fitted.pca.kept_share(),
+        fitted.clusters.clusters(), fitted.clusters.fit.mean_log_likelihood,
+        fitted.clusters.fit.history.size());
+    return fitted;
 }
 
 void skip(const PosePartition& partition, StageResult& result) {
@@ -142,27 +139,23 @@ void skip(const PosePartition& partition, StageResult& result) {
 }  // namespace
 
 StageResult make_pose_clusters(const StageContext& context, const StageTask& task) {
+    const auto partitions = pose_partitions(context, task.inputs_of("features"));
+    const auto fitted = for_partitions<FittedPartition>(
+        context.workers(), partitions, [&](size_t i, const Workers& workers) {
+            const auto checkpoint = context.workspace.folder() /
+                                    fmt::format("checkpoint-{}-{}", task.header.key.hex(), i);
+            return fit(context, partitions[i], checkpoint, workers);
+        });
+    StageResult result;
+    if (!context.is_root()) return result;
     ArtifactWriter file(task.output, task.header,
                         parse_compression(context.options.frames.compression));
-    StageResult result;
-    const auto partitions = pose_partitions(context, task.inputs_of("features"));
     for (size_t i = 0; i < partitions.size(); ++i) {
-        const PosePartition& partition = partitions[i];
-        if (partition.rows() < 2) {
-            skip(partition, result);
-            continue;
+        if (fitted[i].is_fitted()) {
+            write_pose_clusters(file, partitions[i].path, fitted[i].pca, fitted[i].clusters);
+        } else {
+            skip(partitions[i], result);
         }
-        const Pca pca = principal_components(context, partition);
-        const MatrixF rows = project_rows(partition, pca, context.resources.threads, context.stop);
-        const auto checkpoint =
-            context.workspace.folder() / fmt::format("checkpoint-{}-{}", task.header.key.hex(), i);
-        const PoseClusters clusters = cluster(context, partition, rows, checkpoint);
-        write_pose_clusters(file, partition.path, pca, clusters);
-        context.log.info(
-            "pose_clusters {}: {} frames, {} components ({:.1f} % of variance), {} clusters, "
-            "mean log-likelihood {:.4f} after {} iterations",
-            partition.path, partition.rows(), pca.dimension(), 100 * pca.kept_share(),
-            clusters.clusters(), clusters.fit.mean_log_likelihood, clusters.fit.history.size());
     }
     result.file = file.close();
     return result;

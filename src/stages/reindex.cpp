@@ -8,6 +8,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/run/meter.h"
 #include "run_in_progress.h"
@@ -54,8 +55,8 @@ std::optional<RunRecord> find_opened(const ReindexRequest& request, const StoreD
 /// `slice` as RunInProgress::enter has it.
 RunRecord survey_and_enter(const ReindexRequest& request, RunInProgress& run,
                            const std::string& slice, const StopToken& stop) {
-    RunRecord record{survey_corpus(request.corpus, request.resources.threads, run.log(), stop),
-                     request.options};
+    const Workers workers(request.resources.threads, request.ranks);
+    RunRecord record{survey_corpus(request.corpus, workers, run.log(), stop), request.options};
     run.enter(record, slice);
     return record;
 }
@@ -153,12 +154,62 @@ RunRecord open_run(const ReindexRequest& request, const Log& terminal, const Sto
     return record;
 }
 
+namespace {
+
+/// What rank 0 tells the others, who find nothing by themselves: a file system may show them for a
+/// while what was, not what is.
+struct Orders {
+    RunRecord record;
+    FinishedPlan finished;
+};
+
+std::string pack_orders(const RunPlan& plan, const FinishedPlan& finished) {
+    Packer out;
+    out.put(std::string_view(write_run_record(plan.survey, plan.options)));
+    out.put(std::string_view(plan.survey.remedy_for_change));
+    out.put(std::string_view(pack_finished(finished)));
+    return out.take();
+}
+
+Orders unpack_orders(std::string bytes) {
+    Unpacker in(std::move(bytes));
+    Orders orders;
+    orders.record = parse_run_record(in.get_text(), "the run's record");
+    orders.record.survey.remedy_for_change = in.get_text();
+    orders.finished = unpack_finished(in.get_text());
+    return orders;
+}
+
+/// A rank's part in a run that rank 0 leads.
+void assist(const ReindexRequest& request, Communicator& ranks, Log log, const StopToken& stop) {
+    const bool survey = unpacked<uint8_t>(ranks.broadcast({})) != 0;
+    if (survey) {
+        const Workers workers(request.resources.threads, &ranks);
+        survey_corpus(request.corpus, workers, log, stop);
+    }
+    Orders orders = unpack_orders(ranks.broadcast({}));
+    const RunPlan plan(std::move(orders.record.survey), orders.record.options);
+    VerifiedFiles verified;
+    const Workspace workspace(StoreDirectory::open(request.store), nullptr, verified);
+    log.add_file(workspace.folder() / fmt::format("log-of-rank-{}.txt", ranks.rank()));
+    carry_out(plan, std::move(orders.finished), {.stages = request.only, .slice = {}},
+              {workspace, request.resources, log, stop, ranks});
+}
+
+}  // namespace
+
 RunSummary reindex(const ReindexRequest& request, const Log& terminal, const StopToken& stop) {
     const Meter meter;
     const auto limit = limit_threads(request.resources);
     announce(request.resources, terminal);
     for (const std::string& stage : request.only) stage_named(stage);
     require_folder(request.corpus);
+    SerialCommunicator alone;
+    Communicator& ranks = request.ranks ? *request.ranks : alone;
+    if (!ranks.is_root()) {
+        assist(request, ranks, terminal, stop);
+        return {};
+    }
 
     StoreDirectory store = open_store(request);
     const StoreLock lock = store.lock_writer();
@@ -166,13 +217,21 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     RunInProgress run(store, terminal);
     run.workspace().remove_leftovers();
 
+    ranks.broadcast(packed(uint8_t{!opened}));
     const RunRecord record = opened ? *opened : survey_and_enter(request, run, "", stop);
     const RunPlan plan(record.survey, record.options);
     tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, run.workspace());
+<<<<<<< HEAD
     const FinishedPlan after = carry_out(plan, before, selection_of(request), run.workspace(),
                                          request.resources, run.log(), stop);
+=======
+    ranks.broadcast(pack_orders(plan, before));
+    const FinishedPlan after =
+        carry_out(plan, before, {.stages = request.only, .slice = {}},
+                  {run.workspace(), request.resources, run.log(), stop, ranks});
+>>>>>>> 67bfc09 (Carry out a run on several ranks)
     Publication publication = request.publish
                                   ? publish_and_forget(run, plan, after, request.copy)
                                   : prepare_publication(plan, after, run.last(), run.log());
@@ -196,8 +255,10 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
     const RunPlan plan(record.survey, record.options);
     tell(plan, run.log());
     const Selection mine{.stages = {"frames"}, .slice = slice};
-    const FinishedPlan finished = carry_out(plan, find_finished(plan, run.workspace(), mine), mine,
-                                            run.workspace(), request.resources, run.log(), stop);
+    SerialCommunicator alone;
+    const FinishedPlan finished =
+        carry_out(plan, find_finished(plan, run.workspace(), mine), mine,
+                  {run.workspace(), request.resources, run.log(), stop, alone});
     return sum_up_takes(plan, finished, slice);
 }
 

@@ -9,6 +9,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/base/progress.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/take_format.h"
@@ -178,6 +179,96 @@ void quarantine_duplicates(std::vector<Take>& takes) {
     }
 }
 
+/// What rank 0 finds, before any take is read.
+struct Findings {
+    std::vector<Take> takes;                  ///< sorted by name
+    std::map<std::string, Digest> skeletons;  ///< content of each skeleton file
+};
+
+void pack(Packer& out, const Take& take) {
+    for (const std::string* text :
+         {&take.name, &take.source, &take.skeleton_source, &take.quarantined}) {
+        out.put(std::string_view(*text));
+    }
+    out.put(std::string_view(take.content.hex())).put(take.claimed_frames).put(take.bytes);
+}
+
+void unpack(Unpacker& in, Take& take) {
+    for (std::string* text : {&take.name, &take.source, &take.skeleton_source, &take.quarantined}) {
+        *text = in.get_text();
+    }
+    take.content = Digest::from_hex(in.get_text());
+    take.claimed_frames = in.get<int64_t>();
+    take.bytes = in.get<uint64_t>();
+}
+
+void pack(Packer& out, const Findings& findings) {
+    out.put<uint64_t>(findings.takes.size());
+    for (const Take& take : findings.takes) pack(out, take);
+    out.put<uint64_t>(findings.skeletons.size());
+    for (const auto& [path, content] : findings.skeletons) {
+        out.put(std::string_view(path)).put(std::string_view(content.hex()));
+    }
+}
+
+void unpack(Unpacker& in, Findings& findings) {
+    findings.takes.resize(in.get<uint64_t>());
+    for (Take& take : findings.takes) unpack(in, take);
+    for (auto left = in.get<uint64_t>(); left > 0; --left) {
+        const std::string path = in.get_text();
+        findings.skeletons[path] = Digest::from_hex(in.get_text());
+    }
+}
+
+Findings find_takes(const fs::path& corpus) {
+    if (!fs::is_directory(corpus)) {
+        throw Error(ExitCode::nothing_usable, corpus.string() + ": no such folder");
+    }
+    const Listing listing = Walk(corpus).run();
+
+    Findings found;
+    const std::vector<std::string> names = name_takes(listing.takes);
+    for (size_t i = 0; i < listing.takes.size(); ++i) {
+        Take take;
+        take.name = names[i];
+        take.source = listing.takes[i];
+        if (!format_of(take.source)->skeleton_extension.empty()) {
+            take.skeleton_source = find_skeleton(take.source, listing, take.quarantined);
+            if (!take.skeleton_source.empty()) found.skeletons[take.skeleton_source] = {};
+        }
+        found.takes.push_back(std::move(take));
+    }
+    for (const auto& [folder, reason] : listing.unreadable) {
+        Take take;
+        take.name = take.source = folder + "/";
+        take.quarantined =
+            fmt::format("{}: folder cannot be read: {}", path_for_message(folder), reason);
+        found.takes.push_back(std::move(take));
+    }
+    if (found.takes.empty()) {
+        throw Error(ExitCode::nothing_usable,
+                    corpus.string() + ": no take found (looked for " + known_extensions() + ")");
+    }
+    std::sort(found.takes.begin(), found.takes.end(),
+              [](const Take& a, const Take& b) { return a.name < b.name; });
+    hash_skeletons(corpus, found.skeletons, found.takes);
+    return found;
+}
+
+void examine_all(const fs::path& corpus, const std::map<std::string, Digest>& skeletons,
+                 const std::vector<Take*>& takes, int threads, const Log& log,
+                 const StopToken& stop) {
+    Progress progress(log, "survey", static_cast<int64_t>(takes.size()), "takes");
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        tbb::parallel_for(size_t{0}, takes.size(), [&](size_t i) {
+            stop.check();
+            if (takes[i]->quarantined.empty()) examine(corpus, skeletons, *takes[i]);
+            progress.advance();
+        });
+    });
+}
+
 }  // namespace
 
 int64_t Survey::claimed_frames() const {
@@ -221,50 +312,33 @@ std::vector<std::string> name_takes(const std::vector<std::string>& paths) {
     return names;
 }
 
-Survey survey_corpus(const fs::path& corpus, int threads, const Log& log, const StopToken& stop) {
-    if (!fs::is_directory(corpus)) {
-        throw Error(ExitCode::nothing_usable, corpus.string() + ": no such folder");
+Survey survey_corpus(const fs::path& corpus, const Workers& workers, const Log& log,
+                     const StopToken& stop) {
+    Findings findings;
+    if (workers.is_root()) findings = find_takes(corpus);
+    if (workers.rank_count() > 1) {
+        findings = unpacked<Findings>(workers.ranks->broadcast(packed(findings)));
     }
-    const Listing listing = Walk(corpus).run();
-
+    std::vector<Take>& takes = findings.takes;
+    std::vector<Take*> mine;
+    for (size_t i = 0; i < takes.size(); ++i) {
+        if (static_cast<int>(i % static_cast<size_t>(workers.rank_count())) == workers.rank()) {
+            mine.push_back(&takes[i]);
+        }
+    }
+    examine_all(corpus, findings.skeletons, mine, workers.threads, log, stop);
+    if (workers.rank_count() > 1) {
+        Packer examined;
+        for (const Take* take : mine) pack(examined, *take);
+        std::vector<Unpacker> parts;
+        for (std::string& part : workers.ranks->gather_to_all(examined.take())) {
+            parts.emplace_back(std::move(part));
+        }
+        for (size_t i = 0; i < takes.size(); ++i) unpack(parts[i % parts.size()], takes[i]);
+    }
     Survey survey;
     survey.corpus = corpus;
-    const std::vector<std::string> names = name_takes(listing.takes);
-    std::map<std::string, Digest> skeletons;
-    for (size_t i = 0; i < listing.takes.size(); ++i) {
-        Take take;
-        take.name = names[i];
-        take.source = listing.takes[i];
-        if (!format_of(take.source)->skeleton_extension.empty()) {
-            take.skeleton_source = find_skeleton(take.source, listing, take.quarantined);
-            if (!take.skeleton_source.empty()) skeletons[take.skeleton_source] = {};
-        }
-        survey.takes.push_back(std::move(take));
-    }
-    for (const auto& [folder, reason] : listing.unreadable) {
-        Take take;
-        take.name = take.source = folder + "/";
-        take.quarantined =
-            fmt::format("{}: folder cannot be read: {}", path_for_message(folder), reason);
-        survey.takes.push_back(std::move(take));
-    }
-    if (survey.takes.empty()) {
-        throw Error(ExitCode::nothing_usable,
-                    corpus.string() + ": no take found (looked for " + known_extensions() + ")");
-    }
-    std::sort(survey.takes.begin(), survey.takes.end(),
-              [](const Take& a, const Take& b) { return a.name < b.name; });
-
-    hash_skeletons(corpus, skeletons, survey.takes);
-    Progress progress(log, "survey", static_cast<int64_t>(survey.takes.size()), "takes");
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-        tbb::parallel_for(size_t{0}, survey.takes.size(), [&](size_t i) {
-            stop.check();
-            if (survey.takes[i].quarantined.empty()) examine(corpus, skeletons, survey.takes[i]);
-            progress.advance();
-        });
-    });
+    survey.takes = std::move(takes);
     quarantine_duplicates(survey.takes);
     quarantine_equal_ids(survey.takes);
     return survey;

@@ -88,19 +88,10 @@ TEST_CASE("a checkpoint gives back what was put, and nothing when it is damaged 
           "[checkpoint]") {
     const TestFolder folder;
     const fs::path path = folder.path / "checkpoint";
-    CHECK_FALSE(CheckpointReader::open(path));
-    const std::vector<double> values = {1.5, -2.5, 1e300};
-    CheckpointWriter()
-        .put<int64_t>(7)
-        .put(std::span<const double>(values))
-        .put<uint8_t>(1)
-        .save(path);
-    auto reader = CheckpointReader::open(path);
-    REQUIRE(reader);
-    CHECK(reader->get<int64_t>() == 7);
-    CHECK(reader->get_all<double>() == values);
-    CHECK(reader->get<uint8_t>() == 1);
-    CHECK_THROWS_AS(reader->get<uint8_t>(), StoreError);
+    CHECK_FALSE(load_checkpoint(path));
+    const std::string bytes("seven\0eight", 11);
+    save_checkpoint(path, bytes);
+    CHECK(load_checkpoint(path) == bytes);
 
     std::ifstream in(path, std::ios::binary);
     const std::string whole((std::istreambuf_iterator<char>(in)), {});
@@ -108,8 +99,8 @@ TEST_CASE("a checkpoint gives back what was put, and nothing when it is damaged 
         std::string damaged = whole;
         damaged[i] = static_cast<char>(damaged[i] ^ 1);
         std::ofstream(path, std::ios::binary) << damaged;
-        CHECK_FALSE(CheckpointReader::open(path));
+        CHECK_FALSE(load_checkpoint(path));
         std::ofstream(path, std::ios::binary) << whole.substr(0, i);
-        CHECK_FALSE(CheckpointReader::open(path));
+        CHECK_FALSE(load_checkpoint(path));
     }
 }

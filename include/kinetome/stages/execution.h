@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/log.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/base/stop.h"
@@ -32,15 +33,29 @@ std::vector<size_t> work_to_make(const RunPlan& plan, const FinishedPlan& finish
 void require_room(const RunPlan& plan, const FinishedPlan& finished, const Selection& selection,
                   const Workspace& workspace);
 
-/// Makes the selected work that `finished` (find_finished) lacks. Throws Interrupted between pieces
-/// of work, CreateError when the disk has too little room for what is to be made, and UsageError
-/// when selected work needs inputs that are neither finished nor selected.
-FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
-                       const Workspace& workspace, const Resources& resources, const Log& log,
-                       const StopToken& stop);
-
 /// Finds what is finished of the selected work (each file is hashed), and makes nothing.
 FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,
                            const Selection& selection = {});
+
+/// What carrying out a plan needs beside the plan.
+struct Execution {
+    const Workspace& workspace;
+    const Resources& resources;
+    const Log& log;
+    StopToken stop;
+    Communicator& ranks;
+};
+
+/// Makes the selected work that `finished` (find_finished) lacks: shards are shared out over the
+/// ranks by frames, other stages are made by all together. All ranks call it alike and return the
+/// same. Throws Interrupted between pieces of work, CreateError when the disk has too little room
+/// for what is to be made, and UsageError when selected work needs inputs that are neither finished
+/// nor selected.
+FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
+                       const Execution& execution);
+
+/// Finished work as a message to other ranks, and back.
+std::string pack_finished(const FinishedPlan& finished);
+FinishedPlan unpack_finished(std::string bytes);
 
 }  // namespace kinetome

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/log.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/base/stop.h"
@@ -30,6 +31,7 @@ struct ReindexRequest {
     /// not those of `options`.
     bool join = false;
     std::map<std::string, std::string> given_options;  ///< what the joined run must agree with
+    Communicator* ranks = nullptr;  ///< that carry out the run together; null: this process alone
 };
 
 /// One stage of a run, for the summary.
@@ -51,8 +53,9 @@ struct RunSummary {
 /// `ingest` in slices, `reindex`, `publish`. Finished work of an earlier run stays usable.
 RunRecord open_run(const ReindexRequest& request, const Log& log, const StopToken& stop);
 
-/// Everything, incrementally, and publishes. A joined run throws Error(nothing_usable) when none is
-/// open, and UsageError when the request is not what it was opened for.
+/// Everything, incrementally, and publishes. Every rank calls it; rank 0 holds the store, publishes
+/// and has the summary, the others return an empty one. A joined run throws Error(nothing_usable)
+/// when none is open, and UsageError when the request is not what it was opened for.
 RunSummary reindex(const ReindexRequest& request, const Log& log, const StopToken& stop);
 
 struct IngestSummary {

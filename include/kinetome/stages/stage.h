@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/log.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/base/stop.h"
@@ -27,6 +28,11 @@ struct StageContext {
     const Workspace& workspace;
     const Log& log;
     StopToken stop;
+    Communicator* ranks = nullptr;  ///< that make the artifact together; null: this process alone
+
+    Workers workers() const { return {resources.threads, ranks}; }
+    /// Whether this rank writes the artifact; the others return an empty result.
+    bool is_root() const { return workers().is_root(); }
 };
 
 /// One artifact to be made.
@@ -49,8 +55,8 @@ struct StageResult {
 struct StageRow {
     std::string name;                 ///< also the artifact's name
     std::vector<std::string> inputs;  ///< stages before it whose artifacts it reads
-    bool sharded;                     ///< one file a shard, or one file
-    int format_version;               ///< raised when the same inputs give another result
+    bool sharded;  ///< one file a shard, each made by one rank, or one file made by all together
+    int format_version;  ///< raised when the same inputs give another result
     std::string description;
     StageResult (*make)(const StageContext&, const StageTask&);
 

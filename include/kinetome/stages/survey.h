@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/digest.h"
 #include "kinetome/base/log.h"
 #include "kinetome/base/pieces.h"
@@ -43,9 +44,10 @@ struct Survey {
 /// Content of a take: its bytes and those of its skeleton file (none: a zero digest).
 Digest content_digest(std::string_view take, const Digest& skeleton);
 
-/// Walks the folder, reads and hashes every take (in parallel). Files of other kinds are passed
-/// over. Throws Error(nothing_usable) when the folder is missing or holds no take at all.
-Survey survey_corpus(const std::filesystem::path& corpus, int threads, const Log& log,
+/// Walks the folder, reads and hashes every take, in parallel and shared by all ranks, who return
+/// the same. Files of other kinds are passed over. Throws Error(nothing_usable) when the folder is
+/// missing or holds no take at all.
+Survey survey_corpus(const std::filesystem::path& corpus, const Workers& workers, const Log& log,
                      const StopToken& stop);
 
 /// Names for paths below a corpus: the stem where it is unique, else as many parent folders as
