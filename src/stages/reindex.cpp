@@ -192,7 +192,7 @@ void assist(const ReindexRequest& request, Communicator& ranks, Log log, const S
     VerifiedFiles verified;
     const Workspace workspace(StoreDirectory::open(request.store), nullptr, verified);
     log.add_file(workspace.folder() / fmt::format("log-of-rank-{}.txt", ranks.rank()));
-    carry_out(plan, std::move(orders.finished), {.stages = request.only, .slice = {}},
+    carry_out(plan, std::move(orders.finished), selection_of(request),
               {workspace, request.resources, log, stop, ranks});
 }
 
@@ -223,15 +223,10 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, run.workspace());
-<<<<<<< HEAD
-    const FinishedPlan after = carry_out(plan, before, selection_of(request), run.workspace(),
-                                         request.resources, run.log(), stop);
-=======
     ranks.broadcast(pack_orders(plan, before));
     const FinishedPlan after =
-        carry_out(plan, before, {.stages = request.only, .slice = {}},
+        carry_out(plan, before, selection_of(request),
                   {run.workspace(), request.resources, run.log(), stop, ranks});
->>>>>>> 67bfc09 (Carry out a run on several ranks)
     Publication publication = request.publish
                                   ? publish_and_forget(run, plan, after, request.copy)
                                   : prepare_publication(plan, after, run.last(), run.log());
