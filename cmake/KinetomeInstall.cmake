@@ -17,3 +17,4 @@ install(FILES
   ${PROJECT_BINARY_DIR}/KinetomeConfig.cmake ${PROJECT_BINARY_DIR}/KinetomeConfigVersion.cmake
   cmake/KinetomeDependencies.cmake cmake/FindxxHash.cmake
   DESTINATION ${package_dir})
+install(DIRECTORY jobs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kinetome/jobs USE_SOURCE_PERMISSIONS)

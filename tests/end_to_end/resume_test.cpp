@@ -22,15 +22,6 @@ void require_whole(const StoreOnDisk& store) {
     REQUIRE(verified.exit_code == 0);
 }
 
-bool has_checkpoint(const StoreOnDisk& store) {
-    if (!fs::exists(store.run_folder())) return false;
-    for (const auto& entry : fs::directory_iterator(store.run_folder())) {
-        const std::string name = entry.path().filename().string();
-        if (name.rfind("checkpoint-", 0) == 0 && !contains(name, ".writing-")) return true;
-    }
-    return false;
-}
-
 /// EM takes long here, so that a signal finds it at work.
 std::vector<std::string> slow_clustering(const fs::path& corpus, const fs::path& store) {
     return reindex(corpus, store,
@@ -98,7 +89,7 @@ TEST_CASE("killed while it clusters, a run goes on after its last iteration", "[
     require_program(slow_clustering(corpus, whole.path()));
 
     Process process(program(slow_clustering(corpus, store.path())));
-    wait_until([&] { return has_checkpoint(store) || process.ended(); });
+    wait_until([&] { return store.has_checkpoint() || process.ended(); });
     process.signal(SIGKILL);
     REQUIRE(process.wait().signal == SIGKILL);
 
@@ -120,7 +111,7 @@ TEST_CASE("a damaged checkpoint is not gone on from", "[resume]") {
     require_program(slow_clustering(corpus, whole.path()));
 
     Process process(program(slow_clustering(corpus, store.path())));
-    wait_until([&] { return has_checkpoint(store) || process.ended(); });
+    wait_until([&] { return store.has_checkpoint() || process.ended(); });
     process.signal(SIGKILL);
     REQUIRE(process.wait().signal == SIGKILL);
     for (const auto& entry : fs::directory_iterator(store.run_folder())) {
@@ -145,7 +136,7 @@ TEST_CASE("asked to stop, a run keeps its work and says how to resume", "[resume
         INFO("signal " << signal);
         const StoreOnDisk store(folder / ("store-" + std::to_string(signal)));
         Process process(program(slow_clustering(corpus, store.path())));
-        wait_until([&] { return has_checkpoint(store) || process.ended(); });
+        wait_until([&] { return store.has_checkpoint() || process.ended(); });
         process.signal(signal);
         const CommandResult stopped = process.wait();
         INFO(stopped.errors);

@@ -21,6 +21,18 @@ class StoreOnDisk {
     std::string name() const { return path_.string(); }
     fs::path run_folder() const { return path_ / "scratch" / "run"; }
 
+    /// Of the clustering, in the run in progress.
+    bool has_checkpoint() const {
+        if (!fs::exists(run_folder())) return false;
+        for (const auto& entry : fs::directory_iterator(run_folder())) {
+            const std::string file_name = entry.path().filename().string();
+            if (file_name.rfind("checkpoint-", 0) == 0 && !contains(file_name, ".writing-")) {
+                return true;
+            }
+        }
+        return false;
+    }
+
     /// Id that `current` names; nothing when there is no such link.
     std::optional<std::string> current() const {
         if (!fs::is_symlink(path_ / "current")) return std::nullopt;

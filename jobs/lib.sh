@@ -1,0 +1,53 @@
+# lib.sh: what the job scripts share. They set jobs, store and max_requeues, and source it.
+
+# A time limit or `scancel` signals the program as well: its answer, not this shell's end, decides.
+trap : TERM
+
+say() { TZ=UTC printf '%(%FT%TZ)T %s\n' -1 "$*"; }
+
+# run_step NAME COMMAND ...: runs it as the job's ranks, and returns what the first one answered. srun's own exit
+# code does not tell enough: it is 0 also when no rank could be started, as on a node that crashed and came back.
+run_step() {
+  local exit_file=$store/scratch/jobs/$1-$SLURM_JOB_ID.exit attempt code
+  shift
+  for attempt in 1 2 3; do
+    code=0
+    rm -f -- "$exit_file"
+    # --wait: when a rank has ended, for whatever reason, the others are given that long.
+    srun --mpi="${KINETOME_SRUN_MPI:-pmix}" --wait=60 --cpus-per-task="$SLURM_CPUS_PER_TASK" \
+      "$jobs/rank.sh" "$exit_file" "$@" || code=$?
+    if [[ -s $exit_file ]]; then
+      return "$(<"$exit_file")"
+    fi
+    ((code <= 1)) || return "$code"
+    say "srun has started nothing (attempt $attempt)"
+  done
+  return 70
+}
+
+# run_stage NAME COMMAND ...: runs a stage, and ends the job as its exit code asks.
+run_stage() {
+  local restarts=${SLURM_RESTART_COUNT:-0} code=0
+  say "job $SLURM_JOB_ID on $SLURM_JOB_NODELIST, start $((restarts + 1))"
+  run_step "$@" || code=$?
+  case $code in
+    0 | 3) # 3: some takes are quarantined; the publish job says so again
+      say "done"
+      exit 0
+      ;;
+    75)
+      if ((restarts >= max_requeues)); then
+        say "interrupted once more after $restarts requeues, as many as are allowed; finished work is kept: submit again"
+        exit 75
+      fi
+      say "interrupted; requeue $((restarts + 1)) of at most $max_requeues"
+      scontrol requeue "$SLURM_JOB_ID"
+      sleep 600 # until Slurm ends this script
+      exit 75
+      ;;
+    *)
+      say "failed with exit code $code"
+      exit "$code"
+      ;;
+  esac
+}

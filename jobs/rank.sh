@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# rank.sh EXIT_FILE COMMAND ...: a rank of a step; the first one leaves its exit code (see run_step in lib.sh).
+set -uo pipefail
+trap : TERM # the command is signalled as well, and ends when its work is safe
+exit_file=$1
+shift
+"$@"
+code=$?
+((SLURM_PROCID > 0)) || printf '%s\n' "$code" >"$exit_file"
+exit "$code"

@@ -1,0 +1,166 @@
+// A corpus indexed by jobs on a real, if small, Slurm cluster: when all goes well, and when tasks,
+// nodes and time limits do not let it (jobs/README.md).
+#include "end_to_end/small_corpus.h"
+#include "job_chain.h"
+
+namespace {
+
+constexpr int some_quarantined = 3, interrupted = 75;
+
+const std::vector<std::string> few_clusters = {"--", "--clusters", "60", "--shard-frames", "8192"};
+
+/// EM takes some seconds, so that it can be found at work.
+std::vector<std::string> slow_clustering(std::vector<std::string> submit_options = {}) {
+    const std::vector<std::string> reindex_options = {
+        "--", "--clusters",       "400", "--shard-frames", "8192", "--min-gain",
+        "0",  "--max-iterations", "150"};
+    submit_options.insert(submit_options.end(), reindex_options.begin(), reindex_options.end());
+    return submit_options;
+}
+
+/// Digests of what one process without Slurm makes of the corpus.
+std::string serial_digests(const fs::path& corpus, const std::vector<std::string>& submit_options) {
+    const TemporaryFolder folder;
+    const StoreOnDisk store(folder / "store");
+    const auto options = std::find(submit_options.begin(), submit_options.end(), "--");
+    std::vector<std::string> words = {"reindex", corpus.string(), "--store", store.name()};
+    words.insert(words.end(), options + 1, submit_options.end());
+    require_program(words);
+    return store.digests();
+}
+
+/// Processes of `kinetome` that work on a store.
+std::vector<pid_t> processes_on(const fs::path& store, const std::string& command) {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename().string();
+        if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+        std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+        std::string program, first;
+        std::getline(file, program, '\0');
+        std::getline(file, first, '\0');
+        std::string rest((std::istreambuf_iterator<char>(file)), {});
+        if (program.ends_with("kinetome") && first == command && contains(rest, store.string())) {
+            found.push_back(std::stoi(name));
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("three jobs publish what one process makes, whatever the folders are called", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "it's a \"corpus\" $(x)", home = folder / "50 %j\nstores";
+    generate_corpus(corpus, 24000, 3);
+    const StoreOnDisk store(home / "store");
+    const JobChain chain(corpus, store.path(), few_clusters);
+    chain.require_published();
+    CHECK(store.digests() == serial_digests(corpus, few_clusters));
+    CHECK(contains(chain.log("reindex-" + chain.reindex), "not published"));
+    CHECK_FALSE(fs::exists(store.run_folder()));
+}
+
+TEST_CASE("one quarantined take does not break the chain, and is told at its end", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    SmallCorpus corpus;
+    corpus.add_good_take();
+    corpus.add("good/good_2.amc", "no take\n");
+    const StoreOnDisk store(corpus.store());
+    const JobChain chain(corpus.path(), store.path(), {"--", "--clusters", "5"});
+    const CommandResult ended = chain.wait();
+    CHECK(ended.exit_code == some_quarantined);
+    CHECK(contains(ended.output, "published; some takes are quarantined"));
+    CHECK(JobChain::state(chain.reindex) == "COMPLETED");
+    CHECK(clips_in(store.path()).at("good_2").state == "quarantined");
+}
+
+TEST_CASE("a killed task is reported, its dependents are cancelled, and submitting again finishes",
+          "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 48000, 4);
+    const StoreOnDisk store(folder / "store");
+    {
+        const JobChain chain(corpus, store.path(), few_clusters);
+        std::vector<pid_t> tasks;
+        wait_until([&] { return !(tasks = processes_on(store.path(), "ingest")).empty(); });
+        for (const pid_t task : tasks) ::kill(task, SIGKILL);
+        const CommandResult ended = chain.wait();
+        INFO(ended.output);
+        CHECK(ended.exit_code != 0);
+        CHECK(contains(ended.output, "(ingest) failed: see " + store.name()));
+        CHECK(contains(ended.output, "its dependents were cancelled"));
+        CHECK(JobChain::state(chain.reindex) == "CANCELLED");
+        CHECK(JobChain::state(chain.publish) == "CANCELLED");
+        CHECK_FALSE(store.current());
+    }
+    const JobChain again(corpus, store.path(), few_clusters);
+    again.require_published();
+    CHECK(store.digests() == serial_digests(corpus, few_clusters));
+}
+
+TEST_CASE("a job whose node crashes begins anew on another one, where it was interrupted",
+          "[slurm]") {
+    const auto cluster = SlurmCluster::find();
+    if (!cluster) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    const JobChain chain(corpus, store.path(), slow_clustering());
+    wait_until([&] { return store.has_checkpoint(); });
+    const std::string node = JobChain::node(chain.reindex);
+    cluster->crash(node);
+    wait_until([&] { return JobChain::state(chain.reindex) != "COMPLETING"; });
+    cluster->mend(node);
+    chain.require_published();
+    const std::string log = chain.log("reindex-" + chain.reindex);
+    CHECK(contains(log, "start 2"));
+    CHECK(contains(log, "goes on after iteration"));
+    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+}
+
+TEST_CASE("warned of its time limit, a job keeps its work and is requeued", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    const JobChain chain(corpus, store.path(), slow_clustering());
+    wait_until([&] { return store.has_checkpoint(); });
+    // As Slurm does before the limit (--signal): the steps, not the script.
+    ask({"scancel", "--signal=TERM", chain.reindex});
+    chain.require_published();
+    const std::string log = chain.log("reindex-" + chain.reindex);
+    CHECK(contains(log, "interrupted; requeue 1 of at most 5"));
+    CHECK(contains(log, "goes on after iteration"));
+    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+}
+
+TEST_CASE("a job that is interrupted more often than is allowed fails clearly", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    const JobChain chain(corpus, store.path(), slow_clustering({"--max-requeues", "1"}));
+    const std::string name = "reindex-" + chain.reindex;
+    wait_until([&] { return store.has_checkpoint(); });
+    for (const char* start : {"start 1", "start 2"}) {
+        wait_until([&] {
+            const std::string log = chain.log(name);
+            const size_t at = log.find(start);
+            return at != std::string::npos &&
+                   contains(log.substr(at), "pose_clusters.h5: to be made");
+        });
+        ask({"scancel", "--signal=TERM", chain.reindex});
+    }
+    const CommandResult ended = chain.wait();
+    CHECK(ended.exit_code == interrupted);
+    CHECK(contains(ended.output, "job " + chain.reindex + " (reindex) failed: see"));
+    CHECK(contains(chain.log(name), "interrupted once more after 1 requeues"));
+    CHECK(JobChain::state(chain.publish) == "CANCELLED");
+}
