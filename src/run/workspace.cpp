@@ -15,8 +15,10 @@ fs::path receipt_path(const fs::path& folder, const std::string& file_name) {
 
 }  // namespace
 
-Workspace::Workspace(StoreDirectory store, const Generation* last, VerifiedFiles& verified)
+Workspace::Workspace(StoreDirectory store, const Generation* last, VerifiedFiles& verified,
+                     Purpose purpose)
     : store_(std::move(store)), last_(last), verified_(&verified), folder_(store_.run_folder()) {
+    if (purpose == Purpose::look) return;
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) {

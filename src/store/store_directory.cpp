@@ -90,12 +90,17 @@ bool may_lie_in_new_store(const std::string& name) {
     return name == "labels.csv" || name.starts_with(fmt::format(".{}.", marker_name));
 }
 
-void mark_as_store(const fs::path& path) {
+/// Throws CreateError for a folder of another kind.
+void require_unused(const fs::path& path) {
     const auto names = names_in(path);
     if (!std::all_of(names.begin(), names.end(), may_lie_in_new_store)) {
         throw CreateError(fmt::format(
             "{} is not a Kinetome store, and not empty: choose another folder", shown(path)));
     }
+}
+
+void mark_as_store(const fs::path& path) {
+    require_unused(path);
     write_file_atomically(path / marker_name,
                           fmt::format("{{\"kinetome_format\":{}}}\n", store_format));
 }
@@ -120,6 +125,12 @@ StoreDirectory StoreDirectory::open(const fs::path& path) {
     }
     require_known_format(marker);
     return StoreDirectory(path);
+}
+
+std::optional<StoreDirectory> StoreDirectory::find(const fs::path& path) {
+    if (is_there(path / marker_name)) return open(path);
+    require_unused(path);
+    return std::nullopt;
 }
 
 StoreDirectory StoreDirectory::open_or_create(const fs::path& path) {

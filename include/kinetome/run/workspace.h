@@ -23,9 +23,14 @@ struct FinishedWork {
 /// and a kill loses nothing that was finished.
 class Workspace {
   public:
+    enum class Purpose {
+        work,  ///< makes the run folder
+        look,  ///< makes nothing: only to find what is finished
+    };
+
     /// `last` is the generation to reuse from, or null; it and `verified` outlive the workspace.
-    /// Makes the run folder.
-    Workspace(StoreDirectory store, const Generation* last, VerifiedFiles& verified);
+    Workspace(StoreDirectory store, const Generation* last, VerifiedFiles& verified,
+              Purpose purpose = Purpose::work);
 
     const StoreDirectory& store() const { return store_; }
     const Generation* last() const { return last_; }

@@ -28,6 +28,9 @@ class StoreDirectory {
     /// rather than scribble in a folder of another kind.
     static StoreDirectory open_or_create(const std::filesystem::path& path);
 
+    /// Opens it; nothing where open_or_create would make one. Makes nothing. Throws as both do.
+    static std::optional<StoreDirectory> find(const std::filesystem::path& path);
+
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path scratch() const { return path_ / "scratch"; }
     /// STORE/scratch/run: the run in progress; survives a kill.
