@@ -67,6 +67,16 @@ std::vector<int64_t> counts_to_fit(PoseClusterOptions options, int64_t rows) {
 
 }  // namespace
 
+double values_of_frames(const ClassShape& shape) {
+    return static_cast<double>(shape.dofs + 3 * shape.joints);
+}
+
+double values_of_features(const ClassShape& shape, const FeatureOptions& options, double rate) {
+    return (static_cast<double>(shape.pose_columns + 3 * shape.joints) * options.pose_rate +
+            effector_values * options.effector_rate) /
+           rate;
+}
+
 int64_t ClipShape::frames_at(double other_rate) const {
     return std::max<int64_t>(1, std::llround(static_cast<double>(frames) * other_rate / rate));
 }

@@ -49,7 +49,6 @@ uint64_t frames_bytes(const ClassShape& shape, int64_t clips, int64_t frames) {
 /// FeatureShardWriter.
 uint64_t features_bytes(const ClassShape& shape, int64_t clips, int64_t pose_rows,
                         int64_t effector_rows) {
-    constexpr int64_t effector_values = 15;
     return Group()
         .rows(shape.pose_columns, {name, name, number})
         .rows(shape.joints, {name})

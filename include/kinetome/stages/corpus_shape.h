@@ -22,6 +22,13 @@ struct ClassShape {
     int64_t pose_columns = 62;
 };
 
+/// Of effector features at one frame: five joints.
+inline constexpr int64_t effector_values = 15;
+
+/// Numbers that the artifacts hold of one frame at the source's rate.
+double values_of_frames(const ClassShape& shape);
+double values_of_features(const ClassShape& shape, const FeatureOptions& options, double rate);
+
 struct ClipShape {
     std::string name;
     std::string source;  ///< path below the corpus, which may tell the subject

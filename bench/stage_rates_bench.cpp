@@ -1,0 +1,286 @@
+// How fast does this machine work? Writes the rates that `kinetome plan --rates FILE` makes its
+// estimates of seconds from: every stage on a generated corpus, at one thread and at all.
+//
+//   stage_rates_bench [-o FILE] [--frames N] [--turns N] [--threads N]
+//       -o         file to write (default: standard output)
+//       --frames   of the corpus (default: 200000)
+//       --turns    of each measurement, of which the least counts (default: 3)
+//       --threads  that are "all" (default: what was granted)
+#include <stdlib.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinetome/base/file.h"
+#include "kinetome/base/resources.h"
+#include "kinetome/features/pose_vector.h"
+#include "kinetome/math/mixture.h"
+#include "kinetome/math/pca.h"
+#include "kinetome/models/pose_clusters.h"
+#include "kinetome/stages/corpus_shape.h"
+#include "kinetome/stages/open_store.h"
+#include "kinetome/stages/rates.h"
+#include "kinetome/stages/reindex.h"
+#include "kinetome/store/feature_store.h"
+#include "kinetome/synthesis/corpus_generator.h"
+
+namespace {
+
+using namespace kinetome;
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path output;
+    int64_t frames = 200'000;
+    int turns = 3;
+    std::optional<int> threads;
+};
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "kinetome-rates-XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw std::runtime_error("cannot create " + name);
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    fs::path operator/(const std::string& name) const { return path_ / name; }
+
+  private:
+    fs::path path_;
+};
+
+/// What else the machine does only ever adds: the least of several turns is nearest to the work.
+struct Least {
+    double wall = std::numeric_limits<double>::infinity();
+    double cpu = std::numeric_limits<double>::infinity();
+
+    void enter(double wall_seconds, double cpu_seconds) {
+        wall = std::min(wall, wall_seconds);
+        cpu = std::min(cpu, cpu_seconds);
+    }
+    void time(const std::function<void()>& work) {
+        const auto started = std::chrono::steady_clock::now();
+        const double cpu_started = cpu_seconds();
+        work();
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
+        enter(elapsed.count(), cpu_seconds() - cpu_started);
+    }
+};
+
+/// t(1) = s + p, t(n) = s + p / n: the share s / t(1).
+double serial_share(double one, double all, int threads) {
+    if (threads < 2) return 0;
+    const double ideal = 1.0 / threads;
+    return std::clamp((all / one - ideal) / (1 - ideal), 0.0, 1.0);
+}
+
+ReindexRequest request(const fs::path& corpus, const fs::path& store, const Resources& resources,
+                       int threads) {
+    ReindexRequest asked;
+    asked.corpus = corpus;
+    asked.store = store;
+    asked.resources = resources;
+    asked.resources.threads = threads;
+    // One cluster: the mixture is measured by itself.
+    asked.options.pose_clusters.clusters = 1;
+    asked.options.pose_clusters.mixture.max_iterations = 1;
+    asked.options.partition.rule = PartitionRule::none;
+    return asked;
+}
+
+/// Stages in table order, each made from nothing.
+using StageTimes = std::vector<Least>;
+
+void time_stages(const fs::path& corpus, const fs::path& store, const Resources& resources,
+                 int threads, StageTimes& times) {
+    fs::remove_all(store);
+    const RunSummary summary = reindex(request(corpus, store, resources, threads), Log(), {});
+    times.resize(summary.stages.size());
+    for (size_t i = 0; i < times.size(); ++i) {
+        times[i].enter(summary.stages[i].cost.seconds, summary.stages[i].cost.cpu_seconds);
+    }
+}
+
+/// Projected pose vectors of a store, clip after clip.
+MatrixF projected_rows(const fs::path& store) {
+    const OpenStore opened(store);
+    std::vector<MatrixF> parts;
+    int64_t count = 0;
+    std::vector<double> floors;
+    for (const Receipt* receipt : opened.generation.ledger().of_stage("features")) {
+        const FeatureShardReader shard(opened.generation.open(receipt->file.file_name));
+        for (const FeatureShardClip& clip : shard.clips()) {
+            parts.push_back(
+                shard.pose_vectors(clip.clip_class, clip.first_pose_row, clip.pose_rows));
+            floors = shard.feature_class(clip.clip_class).pose_vector_floors;
+            count += clip.pose_rows;
+        }
+    }
+    MatrixF rows(count, parts.front().cols());
+    int64_t first = 0;
+    for (const MatrixF& part : parts) {
+        rows.middleRows(first, part.rows()) = part;
+        first += part.rows();
+    }
+    const VectorD least = Eigen::Map<const VectorD>(floors.data(), rows.cols());
+    const Pca pca = fit_pca(moments_of(rows), least, PoseClusterOptions().variance_share);
+    return pca.project(rows);
+}
+
+double nanoseconds(double seconds, int64_t count) {
+    return seconds * 1e9 / static_cast<double>(count);
+}
+
+/// A mixture on as many rows as --frames-per-cluster would give it, where there are as many.
+ClusterRates measure_mixture(const MatrixF& all_rows, int64_t clusters, int turns) {
+    constexpr int64_t frames_per_cluster = 25, least_rows = 8192;
+    const int64_t count =
+        std::min(all_rows.rows(), std::max(least_rows, clusters * frames_per_cluster));
+    const MatrixF first_rows = all_rows.topRows(count);
+    const MatrixRows rows(first_rows);
+    const double floor = least_variance(moments_of(rows, 1), {});
+
+    Least start, iteration, letters;
+    Mixture model;
+    for (int turn = 0; turn < turns; ++turn) {
+        start.time([&] { model = start_mixture(rows, clusters, {}, 0, 1); });
+    }
+    constexpr int settling = 3;  // the first iterations meet equal variances, and few of them
+    for (int turn = 0; turn < settling + turns; ++turn) {
+        Least one;
+        one.time([&] { model = estimate(model, accumulate(model, rows, 1), floor); });
+        if (turn >= settling) iteration.enter(one.wall, one.cpu);
+    }
+    for (int turn = 0; turn < turns; ++turn) {
+        letters.time([&] { likeliest_clusters(model, rows, 1); });
+    }
+    return {.clusters = static_cast<double>(model.clusters()),
+            .start_nanoseconds_per_row = nanoseconds(start.cpu, count),
+            .iteration_nanoseconds_per_row = nanoseconds(iteration.cpu, count),
+            .letter_nanoseconds_per_row = nanoseconds(letters.cpu, count)};
+}
+
+double measure_serial_share(const MatrixRows& rows, int turns, int threads) {
+    constexpr int64_t clusters = 1000;
+    const Mixture model = start_mixture(rows, clusters, {}, 0, threads);
+    Least one, all;
+    for (int turn = 0; turn < turns; ++turn) {
+        one.time([&] { accumulate(model, rows, 1); });
+        all.time([&] { accumulate(model, rows, threads); });
+    }
+    return serial_share(one.wall, all.wall, threads);
+}
+
+double measure_accessibility(const MatrixRows& rows, int turns) {
+    constexpr int64_t letters = 2000;
+    const Mixture model = start_mixture(rows, std::min(letters, rows.rows()), {}, 0, 1);
+    Least least;
+    for (int turn = 0; turn < turns; ++turn) least.time([&] { accessibility(model, 1.0, 1); });
+    return nanoseconds(least.cpu, model.clusters() * model.clusters());
+}
+
+std::string processor() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    }
+    return "unknown";
+}
+
+enum StageNumber : size_t { frames_stage, features_stage, pose_clusters_stage, strings_stage };
+
+Rates measure(const Options& options) {
+    const Resources resources = granted_resources(options.threads, std::nullopt);
+    const TemporaryFolder folder;
+    generate_corpus({.frames = options.frames}, folder / "takes", resources.threads);
+    generate_corpus({.frames = 100, .subjects = 1}, folder / "take", resources.threads);
+
+    StageTimes one, all, empty;
+    for (int turn = 0; turn < options.turns; ++turn) {
+        time_stages(folder / "take", folder / "store", resources, 1, empty);
+        time_stages(folder / "takes", folder / "store", resources, resources.threads, all);
+        time_stages(folder / "takes", folder / "store", resources, 1, one);
+    }
+    const OpenStore opened(folder / "store");
+    const int64_t count = opened.generation.catalog().frames();
+    const auto files = static_cast<double>(opened.generation.ledger().of_stage("frames").size());
+
+    const auto shard_rates = [&](StageNumber stage, double values_per_frame) {
+        ShardRates rates;
+        rates.seconds_per_file = empty[stage].wall;
+        rates.nanoseconds_per_value =
+            nanoseconds(std::max(0.0, one[stage].cpu - files * empty[stage].cpu), count) /
+            values_per_frame;
+        rates.serial_share = serial_share(one[stage].wall, all[stage].wall, resources.threads);
+        return rates;
+    };
+    const ClassShape shape;  // of the generated corpus too
+    Rates rates;
+    rates.machine = processor();
+    rates.version = opened.generation.ledger().version;
+    rates.threads = resources.threads;
+    const FeatureOptions features;
+    rates.frames = shard_rates(frames_stage, values_of_frames(shape));
+    rates.features = shard_rates(features_stage, values_of_features(shape, features, 120.0));
+
+    const auto per_row = [&](StageNumber stage) {
+        return nanoseconds(std::max(0.0, one[stage].cpu - empty[stage].cpu), count);
+    };
+    const MatrixF rows = projected_rows(folder / "store");
+    PoseRates& poses = rates.poses;
+    poses.seconds_per_file = empty[pose_clusters_stage].wall;
+    poses.projection_nanoseconds_per_row = per_row(strings_stage);
+    poses.moments_nanoseconds_per_row =
+        std::max(0.0, per_row(pose_clusters_stage) - poses.projection_nanoseconds_per_row);
+    poses.accessibility_nanoseconds_per_pair =
+        measure_accessibility(MatrixRows(rows), options.turns);
+    poses.serial_share = measure_serial_share(MatrixRows(rows), options.turns, resources.threads);
+    for (const int64_t clusters : {30, 100, 300, 1000, 3000, 8000}) {
+        if (clusters > rows.rows()) break;
+        poses.by_clusters.push_back(measure_mixture(rows, clusters, options.turns));
+    }
+    return rates;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("how fast this machine works, for `kinetome plan --rates`");
+    Options options;
+    app.add_option("-o,--output", options.output, "file to write (default: standard output)");
+    app.add_option("--frames", options.frames, "of the generated corpus")
+        ->capture_default_str()
+        ->check(CLI::Range(int64_t{10'000}, std::numeric_limits<int64_t>::max()));
+    app.add_option("--turns", options.turns, "of each measurement, of which the least counts")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    app.add_option("--threads", options.threads, "that are \"all\" (default: what was granted)");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const std::string text = write_rates(measure(options));
+        if (options.output.empty()) {
+            std::fputs(text.c_str(), stdout);
+        } else {
+            write_file_atomically(options.output, text);
+        }
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "stage_rates_bench: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

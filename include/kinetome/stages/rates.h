@@ -1,0 +1,58 @@
+// How fast a machine works, in numbers that bench/stage_rates_bench measures: what estimates of
+// seconds are made from.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinetome {
+
+/// A sharded stage.
+struct ShardRates {
+    double seconds_per_file = 0;       ///< to open, sync and hash it, however small
+    double nanoseconds_per_value = 0;  ///< written, by one thread
+    double serial_share = 0;           ///< of the time, that more threads do not shorten
+};
+
+/// Mixtures of one size, by one thread.
+struct ClusterRates {
+    double clusters = 0;                       ///< κ
+    double start_nanoseconds_per_row = 0;      ///< k-means++ as a whole
+    double iteration_nanoseconds_per_row = 0;  ///< of EM
+    double letter_nanoseconds_per_row = 0;     ///< the likeliest cluster
+};
+
+struct PoseRates {
+    double seconds_per_file = 0;             ///< to open, sync and hash it, however small
+    double moments_nanoseconds_per_row = 0;  ///< read, and summed for principal components
+    double projection_nanoseconds_per_row = 0;
+    double accessibility_nanoseconds_per_pair = 0;  ///< of letters
+    double serial_share = 0;
+    std::vector<ClusterRates> by_clusters;  ///< ascending; at least one
+};
+
+struct Rates {
+    std::string machine;  ///< processor, for whoever reads the file
+    std::string version;  ///< of the program that was measured
+    int threads = 1;      ///< of the many that serial shares were measured with
+    ShardRates frames;
+    ShardRates features;
+    PoseRates poses;
+};
+
+/// For any κ: between the logarithms of those measured, beyond them in proportion to κ.
+ClusterRates rates_of_clusters(const PoseRates& rates, int64_t clusters);
+
+/// Measured where the program is developed; good for an order of magnitude elsewhere.
+Rates shipped_rates();
+
+std::string write_rates(const Rates& rates);
+/// Throws UsageError naming `origin` and line or key for what is missing, unknown or not positive.
+Rates parse_rates(std::string_view toml, const std::string& origin);
+/// Throws UsageError when there is no such file.
+Rates read_rates(const std::filesystem::path& file);
+
+}  // namespace kinetome
