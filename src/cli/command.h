@@ -35,6 +35,7 @@ struct Command {
 Command reindex_command();
 Command ingest_command();
 Command publish_command();
+Command plan_command();
 Command generate_command();
 Command info_command();
 Command verify_command();

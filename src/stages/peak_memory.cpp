@@ -1,0 +1,87 @@
+#include "kinetome/stages/peak_memory.h"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "clip_pipeline.h"
+#include "kinetome/math/mixture.h"
+#include "kinetome/stages/stage.h"
+#include "kinetome/stages/work_share.h"
+
+namespace kinetome {
+namespace {
+
+constexpr uint64_t program_bytes = 24 << 20;  // code, libraries, buffers of files
+constexpr uint64_t bytes_per_clip = 2048;     // of survey, catalog and ledger
+constexpr int64_t typical_components = 12;
+
+uint64_t bytes_of(double values) {
+    return static_cast<uint64_t>(values * sizeof(float));
+}
+
+/// Clips on their way from reading to writing: the largest of the corpus at once, at worst.
+uint64_t pipeline_bytes(const std::string& stage, const CorpusShape& corpus,
+                        const ReindexOptions& options, const Resources& resources) {
+    std::vector<uint64_t> sizes, sources;
+    for (const ClipShape& clip : corpus.clips) {
+        const ClassShape& shape = corpus.class_of(clip);
+        const double frame = values_of_frames(shape);
+        const double feature = values_of_features(shape, options.features, clip.rate);
+        sizes.push_back(static_cast<uint64_t>(clip.frames) *
+                        bytes_of(stage == "frames" ? frame : frame + feature));
+        sources.push_back(clip.source_bytes);
+    }
+    std::sort(sizes.rbegin(), sizes.rend());
+    std::sort(sources.rbegin(), sources.rend());
+    uint64_t bytes = 0;
+    const size_t in_flight = clips_in_flight(resources, sizes.empty() ? 0 : sizes.front());
+    for (size_t i = 0; i < std::min(in_flight, sizes.size()); ++i) bytes += sizes[i];
+    if (stage != "frames") return bytes;
+    const auto parsing = static_cast<size_t>(resources.threads);
+    for (size_t i = 0; i < std::min(parsing, sources.size()); ++i) bytes += sources[i];
+    return bytes;
+}
+
+/// A partition that is worked on by one rank, or its share at each of several.
+uint64_t partition_bytes(const std::string& stage, const PartitionShape& partition,
+                         const ReindexOptions& options, const Resources& resources, int ranks) {
+    const int64_t clusters = partition.most_clusters();
+    const auto rows = static_cast<uint64_t>(partition.rows);
+    const uint64_t kept =
+        rows / static_cast<uint64_t>(ranks) * bytes_of(static_cast<double>(typical_components));
+    if (stage == "motion_strings") {
+        const auto words = static_cast<uint64_t>(clusters * ((clusters + 63) / 64));
+        return kept + rows * sizeof(int32_t) + 2 * words * sizeof(uint64_t);
+    }
+    const auto sum_bytes =
+        static_cast<uint64_t>(clusters * (typical_components + 2)) * sizeof(double);
+    const auto waiting = 2 * std::bit_width(static_cast<uint64_t>(partition.pieces));
+    const auto sums = static_cast<uint64_t>(2 * resources.threads + waiting + 4);
+    const MixtureOptions& mixture = options.pose_clusters.mixture;
+    return kept + start_bytes(partition.rows, typical_components, mixture, ranks) +
+           sums * sum_bytes;
+}
+
+}  // namespace
+
+uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
+                     const ReindexOptions& options, const Resources& resources, int ranks) {
+    const uint64_t at_rest = program_bytes + corpus.clips.size() * bytes_per_clip;
+    if (stage_named(stage).sharded) {
+        return at_rest + pipeline_bytes(stage, corpus, options, resources);
+    }
+    const auto partitions = partition_shapes(corpus, options);
+    std::vector<int64_t> rows;
+    for (const PartitionShape& partition : partitions) rows.push_back(partition.rows);
+    const std::vector<int> owners = share_out(rows, ranks, true);
+    uint64_t largest = 0;
+    for (size_t i = 0; i < partitions.size(); ++i) {
+        const int sharing = owners[i] == all_ranks ? ranks : 1;
+        largest =
+            std::max(largest, partition_bytes(stage, partitions[i], options, resources, sharing));
+    }
+    return std::min(at_rest + largest, std::max(resources.memory_bytes, at_rest));
+}
+
+}  // namespace kinetome

@@ -1,0 +1,149 @@
+#include "kinetome/stages/stage_loads.h"
+
+#include <algorithm>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/stages/stage.h"
+
+namespace kinetome {
+namespace {
+
+constexpr double nanosecond = 1e-9;
+
+/// Sums of an E step and the model they make; components are not known before.
+constexpr double typical_components = 12;
+constexpr double bytes_per_cluster = (typical_components + 2) * sizeof(double);
+
+double fit_seconds(const PartitionShape& partition, const MixtureOptions& options,
+                   const PoseRates& rates) {
+    const auto rows = static_cast<double>(partition.rows);
+    double seconds = 0;
+    for (const int64_t clusters : partition.cluster_counts) {
+        const ClusterRates each = rates_of_clusters(rates, clusters);
+        const double drawn = std::min(rows, static_cast<double>(options.start_sample));
+        const double steps = options.max_iterations + 1;  // one more tells the likelihood
+        seconds += options.restarts *
+                   (drawn * each.start_nanoseconds_per_row +
+                    rows * steps * each.iteration_nanoseconds_per_row) *
+                   nanosecond;
+    }
+    return seconds;
+}
+
+/// What a rank hands over and gets back: a few subtrees of sums, and the sum of all.
+double fit_exchange(const PartitionShape& partition, const MixtureOptions& options) {
+    constexpr double sums_an_iteration = 4;
+    double bytes = 0;
+    for (const int64_t clusters : partition.cluster_counts) {
+        bytes += static_cast<double>(clusters) * bytes_per_cluster * sums_an_iteration *
+                 (options.max_iterations + 1) * options.restarts;
+    }
+    return bytes;
+}
+
+LoadItem clusters_item(const PartitionShape& partition, const ReindexOptions& options,
+                       const PoseRates& rates) {
+    const auto rows = static_cast<double>(partition.rows);
+    const MixtureOptions& mixture = options.pose_clusters.mixture;
+    LoadItem item;
+    item.amount = partition.rows;
+    item.pieces = partition.pieces;
+    item.seconds = rows *
+                       (rates.moments_nanoseconds_per_row + rates.projection_nanoseconds_per_row) *
+                       nanosecond +
+                   fit_seconds(partition, mixture, rates);
+    item.exchanged_bytes = fit_exchange(partition, mixture);
+    return item;
+}
+
+LoadItem strings_item(const PartitionShape& partition, const PoseRates& rates) {
+    const auto rows = static_cast<double>(partition.rows);
+    const auto clusters = static_cast<double>(partition.most_clusters());
+    const ClusterRates each = rates_of_clusters(rates, partition.most_clusters());
+    LoadItem item;
+    item.amount = partition.rows;
+    item.pieces = partition.pieces;
+    item.seconds =
+        (rows * (rates.projection_nanoseconds_per_row + each.letter_nanoseconds_per_row) +
+         clusters * clusters * rates.accessibility_nanoseconds_per_pair) *
+        nanosecond;
+    item.exchanged_bytes = rows * sizeof(int32_t);
+    return item;
+}
+
+const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
+    return stage == "frames" ? rates.frames : rates.features;
+}
+
+}  // namespace
+
+LoadItem shard_item(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
+                    const ReindexOptions& options, const Rates& rates) {
+    LoadItem item;
+    double values = 0;
+    const auto shard = corpus.shards.find(cut);
+    if (shard != corpus.shards.end()) {
+        item.pieces = std::max<int64_t>(1, static_cast<int64_t>(shard->second.size()));
+        for (const size_t i : shard->second) {
+            const ClipShape& clip = corpus.clips[i];
+            const ClassShape& shape = corpus.class_of(clip);
+            const double per_frame = stage == "frames"
+                                         ? values_of_frames(shape)
+                                         : values_of_features(shape, options.features, clip.rate);
+            item.amount += clip.frames;
+            values += static_cast<double>(clip.frames) * per_frame;
+        }
+    }
+    const ShardRates& each = shard_rates(stage, rates);
+    item.seconds = each.seconds_per_file + values * each.nanoseconds_per_value * nanosecond;
+    return item;
+}
+
+StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
+                     const ReindexOptions& options, const Rates& rates) {
+    StageLoad load;
+    if (stage_named(stage).sharded) {
+        load.serial_share = shard_rates(stage, rates).serial_share;
+        for (const auto& [cut, clips] : corpus.shards) {
+            load.items.push_back(shard_item(stage, cut, corpus, options, rates));
+        }
+        return load;
+    }
+    load.serial_share = rates.poses.serial_share;
+    load.shares_items = true;
+    for (const PartitionShape& partition : partition_shapes(corpus, options)) {
+        load.items.push_back(stage == "pose_clusters"
+                                 ? clusters_item(partition, options, rates.poses)
+                                 : strings_item(partition, rates.poses));
+    }
+    if (!load.items.empty()) load.items.front().seconds += rates.poses.seconds_per_file;
+    return load;
+}
+
+std::map<std::string, double> second_corrections(const Generation& generation, const Rates& rates) {
+    constexpr double least_believed = 0.25;
+    ReindexOptions options;
+    try {
+        const std::filesystem::path file = generation.folder() / "config.toml";
+        parse_configuration(read_file(file), file.string(), options);
+    } catch (const Error&) {
+        return {};
+    }
+    const CorpusShape corpus = corpus_shape(generation.catalog());
+    std::map<std::string, double> corrections;
+    for (const StageRow& stage : stage_table()) {
+        double taken = 0;
+        for (const Receipt* receipt : generation.ledger().of_stage(stage.name)) {
+            // One thread takes the processor's seconds, and no less than those on the wall.
+            taken += std::max(receipt->cost.cpu_seconds, receipt->cost.seconds);
+        }
+        const double expected = load_seconds(stage_load(stage.name, corpus, options, rates), 1, 1);
+        if (taken > 0 && expected > 0) {
+            corrections[stage.name] = std::max(taken / expected, least_believed);
+        }
+    }
+    return corrections;
+}
+
+}  // namespace kinetome
