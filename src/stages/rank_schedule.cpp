@@ -16,7 +16,7 @@ constexpr double least_gain = 0.1;
 double item_seconds(const LoadItem& item, double serial_share, int64_t workers) {
     const int64_t rounds = (item.pieces + workers - 1) / workers;
     const double parallel = static_cast<double>(rounds) / static_cast<double>(item.pieces);
-    return item.seconds * (serial_share + (1 - serial_share) * parallel);
+    return item.fixed_seconds + item.seconds * (serial_share + (1 - serial_share) * parallel);
 }
 
 double exchange_seconds(const LoadItem& item, int ranks) {

@@ -115,7 +115,10 @@ class Estimator {
         }
         const auto correction = pace_.corrections.find(stage.name);
         if (correction != pace_.corrections.end()) {
-            for (LoadItem& item : load.items) item.seconds *= correction->second;
+            for (LoadItem& item : load.items) {
+                item.seconds *= correction->second;
+                item.fixed_seconds *= correction->second;
+            }
         }
         return load;
     }
@@ -123,8 +126,9 @@ class Estimator {
     /// Of all stages but those left out.
     double seconds(const std::string& left_out, int ranks) const {
         double total = 0;
-        for (const auto& [name, load] : loads_) {
-            if (name != left_out) total += load_seconds(load, threads(), ranks);
+        for (const StageRow& stage : stage_table()) {
+            if (stage.name != left_out)
+                total += load_seconds(loads_.at(stage.name), threads(), ranks);
         }
         return total;
     }

@@ -96,7 +96,8 @@ LoadItem shard_item(const std::string& stage, const std::string& cut, const Corp
         }
     }
     const ShardRates& each = shard_rates(stage, rates);
-    item.seconds = each.seconds_per_file + values * each.nanoseconds_per_value * nanosecond;
+    item.seconds = values * each.nanoseconds_per_value * nanosecond;
+    item.fixed_seconds = each.seconds_per_file;
     return item;
 }
 
@@ -117,7 +118,7 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
                                  ? clusters_item(partition, options, rates.poses)
                                  : strings_item(partition, rates.poses));
     }
-    if (!load.items.empty()) load.items.front().seconds += rates.poses.seconds_per_file;
+    if (!load.items.empty()) load.items.front().fixed_seconds = rates.poses.seconds_per_file;
     return load;
 }
 

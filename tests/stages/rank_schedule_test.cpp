@@ -10,7 +10,11 @@ namespace {
 
 LoadItem item(double seconds, int64_t pieces) {
     const auto frames = static_cast<int64_t>(seconds * 1000);
-    return {.amount = frames, .seconds = seconds, .pieces = pieces, .exchanged_bytes = 0};
+    return {.amount = frames,
+            .seconds = seconds,
+            .fixed_seconds = 0,
+            .pieces = pieces,
+            .exchanged_bytes = 0};
 }
 
 StageLoad shards(const std::vector<double>& seconds) {
@@ -72,6 +76,9 @@ TEST_CASE("threads shorten an item but for its serial share and its number of pi
     CHECK(load_seconds(load, 2, 1) == Approx(2 + 4));
     load.items[0].pieces = 1;
     CHECK(load_seconds(load, 2, 1) == Approx(10));
+    load.items[0] = {
+        .amount = 1, .seconds = 0, .fixed_seconds = 3, .pieces = 8, .exchanged_bytes = 0};
+    CHECK(load_seconds(load, 4, 1) == Approx(3));
 }
 
 TEST_CASE("what ranks exchange costs them, the more the more they are") {

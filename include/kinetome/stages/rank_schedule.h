@@ -11,6 +11,7 @@ namespace kinetome {
 struct LoadItem {
     int64_t amount = 0;          ///< frames: what it is shared out by
     double seconds = 0;          ///< of one thread
+    double fixed_seconds = 0;    ///< beside those, however many threads: opening, syncing, hashing
     int64_t pieces = 1;          ///< that threads, and ranks where they may, work on side by side
     double exchanged_bytes = 0;  ///< that a rank hands over when ranks share the item
 };
