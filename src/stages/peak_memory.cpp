@@ -12,7 +12,7 @@
 namespace kinetome {
 namespace {
 
-constexpr uint64_t program_bytes = 24 << 20;  // code, libraries, buffers of files
+constexpr uint64_t program_bytes = 32 << 20;  // code, libraries, what the heap does not give back
 constexpr uint64_t bytes_per_clip = 2048;     // of survey, catalog and ledger
 constexpr int64_t typical_components = 12;
 
@@ -43,6 +43,15 @@ uint64_t pipeline_bytes(const std::string& stage, const CorpusShape& corpus,
     return bytes;
 }
 
+/// What rank 0 holds of every partition until the file is written.
+uint64_t result_bytes(const std::string& stage, const PartitionShape& partition) {
+    const int64_t clusters = partition.most_clusters();
+    if (stage == "motion_strings") {
+        return static_cast<uint64_t>(clusters * ((clusters + 63) / 64)) * sizeof(uint64_t);
+    }
+    return static_cast<uint64_t>(clusters * (typical_components + 2)) * sizeof(double);
+}
+
 /// A partition that is worked on by one rank, or its share at each of several.
 uint64_t partition_bytes(const std::string& stage, const PartitionShape& partition,
                          const ReindexOptions& options, const Resources& resources, int ranks) {
@@ -51,8 +60,7 @@ uint64_t partition_bytes(const std::string& stage, const PartitionShape& partiti
     const uint64_t kept =
         rows / static_cast<uint64_t>(ranks) * bytes_of(static_cast<double>(typical_components));
     if (stage == "motion_strings") {
-        const auto words = static_cast<uint64_t>(clusters * ((clusters + 63) / 64));
-        return kept + rows * sizeof(int32_t) + 2 * words * sizeof(uint64_t);
+        return kept + rows * sizeof(int32_t) + result_bytes(stage, partition);
     }
     const auto sum_bytes =
         static_cast<uint64_t>(clusters * (typical_components + 2)) * sizeof(double);
@@ -75,13 +83,14 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
     std::vector<int64_t> rows;
     for (const PartitionShape& partition : partitions) rows.push_back(partition.rows);
     const std::vector<int> owners = share_out(rows, ranks, true);
-    uint64_t largest = 0;
+    uint64_t largest = 0, results = 0;
     for (size_t i = 0; i < partitions.size(); ++i) {
         const int sharing = owners[i] == all_ranks ? ranks : 1;
+        results += result_bytes(stage, partitions[i]);
         largest =
             std::max(largest, partition_bytes(stage, partitions[i], options, resources, sharing));
     }
-    return std::min(at_rest + largest, std::max(resources.memory_bytes, at_rest));
+    return std::min(at_rest + largest + results, std::max(resources.memory_bytes, at_rest));
 }
 
 }  // namespace kinetome

@@ -19,8 +19,8 @@ struct ShardRates {
 
 /// Mixtures of one size, by one thread.
 struct ClusterRates {
-    double clusters = 0;                       ///< κ
-    double start_nanoseconds_per_row = 0;      ///< k-means++ as a whole
+    double clusters = 0;                   ///< κ
+    double start_nanoseconds_per_row = 0;  ///< k-means++, and what the first iterations take more
     double iteration_nanoseconds_per_row = 0;  ///< of EM
     double letter_nanoseconds_per_row = 0;     ///< the likeliest cluster
 };
@@ -46,7 +46,7 @@ struct Rates {
 /// For any κ: between the logarithms of those measured, beyond them in proportion to κ.
 ClusterRates rates_of_clusters(const PoseRates& rates, int64_t clusters);
 
-/// Measured where the program is developed; good for an order of magnitude elsewhere.
+/// Of the machine the program is developed on; good for an order of magnitude elsewhere.
 Rates shipped_rates();
 
 std::string write_rates(const Rates& rates);
