@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -48,22 +47,31 @@ std::optional<uint64_t> kilobyte_line(const std::filesystem::path& path, std::st
     return std::nullopt;
 }
 
-void lower_threads(Resources& resources, uint64_t threads, std::string_view source) {
-    if (threads >= static_cast<uint64_t>(resources.threads)) return;
-    resources.threads = static_cast<int>(threads);
-    resources.threads_source = source;
+std::string shared_source(std::string_view source, int ranks) {
+    return ranks > 1 ? fmt::format("{}, shared by {} ranks", source, ranks) : std::string(source);
 }
 
-void lower_memory(Resources& resources, uint64_t bytes, std::string_view source) {
+void lower_threads(Resources& resources, uint64_t threads, std::string source) {
+    if (threads >= static_cast<uint64_t>(resources.threads)) return;
+    resources.threads = static_cast<int>(threads);
+    resources.threads_source = std::move(source);
+}
+
+void lower_memory(Resources& resources, uint64_t bytes, std::string source) {
     if (resources.memory_bytes != 0 && bytes >= resources.memory_bytes) return;
     resources.memory_bytes = bytes;
-    resources.memory_source = source;
+    resources.memory_source = std::move(source);
 }
 
 void grant_threads(Resources& resources, const GrantSources& sources, const CgroupLimits& cgroup) {
-    resources.threads = std::max(1, sources.affinity_threads);
-    resources.threads_source = "affinity";
-    if (cgroup.threads) lower_threads(resources, static_cast<uint64_t>(*cgroup.threads), "cgroup");
+    const NodeShare& share = sources.share;
+    resources.threads = std::max(1, sources.affinity_threads / share.same_processors);
+    resources.threads_source = shared_source("affinity", share.same_processors);
+    if (cgroup.threads) {
+        const int quota = std::max(1, *cgroup.threads / share.ranks);
+        lower_threads(resources, static_cast<uint64_t>(quota),
+                      shared_source("cgroup", share.ranks));
+    }
     if (const auto slurm = positive_variable(sources, "SLURM_CPUS_PER_TASK")) {
         lower_threads(resources, *slurm, "SLURM_CPUS_PER_TASK");
     }
@@ -73,24 +81,30 @@ void grant_threads(Resources& resources, const GrantSources& sources, const Cgro
 void grant_memory(Resources& resources, const GrantSources& sources, const CgroupLimits& cgroup,
                   uint64_t processors) {
     const auto installed = kilobyte_line(sources.root / "proc/meminfo", "MemTotal:");
-    const auto grant = [&](uint64_t bytes, std::string_view source) {
-        if (!installed || bytes <= *installed) lower_memory(resources, bytes, source);
+    const auto grant = [&](uint64_t bytes, int ranks, std::string_view source) {
+        if (installed && bytes > *installed) return;
+        lower_memory(resources, std::max<uint64_t>(1, bytes / static_cast<uint64_t>(ranks)),
+                     shared_source(source, ranks));
     };
-    const auto grant_mebibytes = [&](uint64_t amount, uint64_t times, std::string_view source) {
+    const auto grant_mebibytes = [&](uint64_t amount, uint64_t times, int ranks,
+                                     std::string_view source) {
         const uint64_t most = std::numeric_limits<uint64_t>::max() / mebibyte / times;
-        if (amount <= most) grant(amount * times * mebibyte, source);
+        if (amount <= most) grant(amount * times * mebibyte, ranks, source);
     };
-    if (cgroup.memory_bytes) grant(*cgroup.memory_bytes, "cgroup");
+    const int ranks = sources.share.ranks;
+    if (cgroup.memory_bytes) grant(*cgroup.memory_bytes, ranks, "cgroup");
     if (const auto slurm = positive_variable(sources, "SLURM_MEM_PER_NODE")) {
-        grant_mebibytes(*slurm, 1, "SLURM_MEM_PER_NODE");
+        grant_mebibytes(*slurm, 1, ranks, "SLURM_MEM_PER_NODE");
     }
     if (const auto slurm = positive_variable(sources, "SLURM_MEM_PER_CPU")) {
-        grant_mebibytes(*slurm, processors, "SLURM_MEM_PER_CPU");
+        grant_mebibytes(*slurm, processors, 1, "SLURM_MEM_PER_CPU");
     }
     if (resources.memory_bytes != 0) return;
     const auto available = kilobyte_line(sources.root / "proc/meminfo", "MemAvailable:");
-    resources.memory_bytes = available ? *available / 5 * 4 : modest_memory;
-    resources.memory_source = available ? "80 % of free memory" : "assumed, as none is reported";
+    resources.memory_bytes =
+        (available ? *available / 5 * 4 : modest_memory) / static_cast<uint64_t>(ranks);
+    resources.memory_source =
+        shared_source(available ? "80 % of free memory" : "assumed, as none is reported", ranks);
 }
 
 int affinity_of_this_process() {
@@ -109,14 +123,15 @@ int affinity_of_this_process() {
 GrantSources GrantSources::of_this_process() {
     return {.affinity_threads = affinity_of_this_process(),
             .root = "/",
-            .environment = [](const std::string& name) -> std::optional<std::string> {
-                const char* value = std::getenv(name.c_str());
-                return value ? std::optional<std::string>(value) : std::nullopt;
-            }};
+            .environment = environment_of_this_process(),
+            .share = {}};
 }
 
-Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes) {
-    return granted_resources(threads, memory_bytes, GrantSources::of_this_process());
+Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes,
+                            const NodeShare& share) {
+    GrantSources sources = GrantSources::of_this_process();
+    sources.share = share;
+    return granted_resources(threads, memory_bytes, sources);
 }
 
 Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes,

@@ -18,6 +18,7 @@ struct Machine {
     TemporaryFolder folder;
     std::map<std::string, std::string> environment;
     int affinity_threads = 64;
+    NodeShare share;
 
     Machine() {
         folder.write("proc/meminfo",
@@ -30,9 +31,11 @@ struct Machine {
             const auto found = environment.find(name);
             return found == environment.end() ? std::nullopt : std::optional(found->second);
         };
-        return granted_resources(
-            threads, bytes,
-            {.affinity_threads = affinity_threads, .root = folder.path(), .environment = variable});
+        return granted_resources(threads, bytes,
+                                 {.affinity_threads = affinity_threads,
+                                  .root = folder.path(),
+                                  .environment = variable,
+                                  .share = share});
     }
     void group(std::string_view lines) const { folder.write("proc/self/cgroup", lines); }
     void limit(const std::string& file, std::string_view text) const {
@@ -86,6 +89,63 @@ TEST_CASE("memory granted per processor is multiplied by the processors of the t
     machine.environment.erase("SLURM_CPUS_PER_TASK");
     machine.affinity_threads = 2;
     CHECK(machine.granted().memory_bytes == 4 * gibibyte);
+}
+
+TEST_CASE("ranks of one node divide its processors and its free memory") {
+    Machine machine;
+    machine.share = {.ranks = 4, .same_processors = 4};
+    CHECK(machine.granted().threads == 16);
+    CHECK(machine.granted().threads_source == "affinity, shared by 4 ranks");
+    CHECK(machine.granted().memory_bytes == 20 * gibibyte);
+    CHECK(machine.granted().memory_source == "80 % of free memory, shared by 4 ranks");
+    // Bound apart, each has its processors to itself.
+    machine.share = {.ranks = 4, .same_processors = 1};
+    CHECK(machine.granted().threads == 64);
+    CHECK(machine.granted().threads_source == "affinity");
+    CHECK(machine.granted().memory_bytes == 20 * gibibyte);
+}
+
+TEST_CASE("ranks of one node divide the limits of their control group") {
+    Machine machine;
+    machine.share = {.ranks = 4, .same_processors = 1};
+    machine.group("0::/\n");
+    machine.limit("cpu.max", "800000 100000\n");
+    machine.limit("memory.max", "34359738368\n");
+    CHECK(machine.granted().threads == 2);
+    CHECK(machine.granted().threads_source == "cgroup, shared by 4 ranks");
+    CHECK(machine.granted().memory_bytes == 8 * gibibyte);
+    CHECK(machine.granted().memory_source == "cgroup, shared by 4 ranks");
+}
+
+TEST_CASE("of what Slurm grants, ranks divide the memory of the node and nothing else") {
+    Machine machine;
+    machine.share = {.ranks = 4, .same_processors = 4};
+    machine.environment = {{"SLURM_CPUS_PER_TASK", "8"}, {"SLURM_MEM_PER_NODE", "65536"}};
+    CHECK(machine.granted().threads == 8);
+    CHECK(machine.granted().threads_source == "SLURM_CPUS_PER_TASK");
+    CHECK(machine.granted().memory_bytes == 16 * gibibyte);
+    CHECK(machine.granted().memory_source == "SLURM_MEM_PER_NODE, shared by 4 ranks");
+
+    machine.environment = {{"SLURM_CPUS_PER_TASK", "8"}, {"SLURM_MEM_PER_CPU", "2048"}};
+    CHECK(machine.granted().memory_bytes == 16 * gibibyte);
+    CHECK(machine.granted().memory_source == "SLURM_MEM_PER_CPU");
+}
+
+TEST_CASE("however many ranks share a processor, each keeps one thread") {
+    Machine machine;
+    machine.affinity_threads = 2;
+    machine.share = {.ranks = 7, .same_processors = 7};
+    machine.group("0::/\n");
+    machine.limit("cpu.max", "200000 100000\n");
+    CHECK(machine.granted().threads == 1);
+}
+
+TEST_CASE("values given to ranks are each rank's own") {
+    Machine machine;
+    machine.share = {.ranks = 4, .same_processors = 4};
+    CHECK(machine.granted(100, 12345).threads == 100);
+    CHECK(machine.granted(100, 12345).memory_bytes == 12345);
+    CHECK(machine.granted(100, 12345).memory_source == "--memory");
 }
 
 TEST_CASE("variables that make no sense are ignored") {

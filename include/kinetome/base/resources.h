@@ -3,10 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "kinetome/base/environment.h"
 
 namespace kinetome {
 
@@ -14,18 +15,28 @@ struct Resources {
     int threads = 1;
     uint64_t memory_bytes = 0;
     std::string threads_source;  ///< e.g. "affinity", "cgroup", "SLURM_CPUS_PER_TASK", "--threads"
-    std::string memory_source;   ///< e.g. "cgroup", "SLURM_MEM_PER_NODE", "80 % of free memory"
+    std::string memory_source;   ///< e.g. "cgroup", "SLURM_MEM_PER_NODE, shared by 4 ranks"
+};
+
+/// The ranks of a run that share what a node grants, this one among them.
+struct NodeShare {
+    int ranks = 1;  ///< on the node: they share its memory and the quota of processors
+    int same_processors =
+        1;  ///< of those, the ones that may run on the same processors as this one
 };
 
 /// Threads: min(affinity, cgroup, SLURM_CPUS_PER_TASK); bytes: min(cgroup, SLURM_MEM_*), else 80 %
-/// of what is free. A given value wins. Throws UsageError for values that are not positive.
-Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes);
+/// of what is free. What several ranks share is divided among them; what Slurm grants each task is
+/// not. A given value wins. Throws UsageError for values that are not positive.
+Resources granted_resources(std::optional<int> threads, std::optional<uint64_t> memory_bytes,
+                            const NodeShare& share = {});
 
 /// Where a grant is written down.
 struct GrantSources {
     int affinity_threads = 1;          ///< processors the process may run on
     std::filesystem::path root = "/";  ///< the folder that holds proc/ and sys/fs/cgroup/
-    std::function<std::optional<std::string>(const std::string& name)> environment;
+    Environment environment;
+    NodeShare share;
 
     static GrantSources of_this_process();
 };
