@@ -7,8 +7,8 @@ cd "$root"
 
 scripts/setup.sh
 scripts/format.sh --check
-scripts/build.sh release
-ctest --preset release -j "$(nproc)"
+scripts/build.sh mpi # runs serially, too
+ctest --preset mpi -j "$(nproc)"
 scripts/build.sh asan sanitized_tests
 ctest --preset asan -j "$(nproc)"
 scripts/build.sh tsan threaded_tests

@@ -1,0 +1,19 @@
+#include "kinetome/run/communicator.h"
+
+#ifdef KINETOME_WITH_MPI
+#include "mpi/mpi_communicator.h"
+#endif
+
+namespace kinetome {
+
+std::unique_ptr<Communicator> start_ranks([[maybe_unused]] const Launch& launch,
+                                          [[maybe_unused]] size_t largest_message) {
+#ifdef KINETOME_WITH_MPI
+    if (launch.offers_mpi && launch.processes != 1) {
+        return std::make_unique<MpiCommunicator>(largest_message);
+    }
+#endif
+    return std::make_unique<SerialCommunicator>();
+}
+
+}  // namespace kinetome
