@@ -29,6 +29,7 @@ Log::Log() : sinks_(std::make_shared<spdlog::sinks::dist_sink_mt>()) {
 
 Log::Log(const LogOptions& options) : Log() {
     format_ = options.format;
+    prefix_ = options.prefix;
     quiet_ = options.quiet;
     on_terminal_ = format_ == LogFormat::text && bar_can_move();
     auto terminal = std::make_shared<spdlog::sinks::stderr_sink_mt>();
@@ -49,7 +50,7 @@ void Log::add_file(const std::filesystem::path& file) {
 }
 
 void Log::line(spdlog::level::level_enum level, const std::string& text) const {
-    logger_->log(level, spdlog::string_view_t(text));
+    logger_->log(level, spdlog::string_view_t(prefix_ + text));
 }
 
 }  // namespace kinetome

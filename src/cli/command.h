@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/log.h"
 #include "kinetome/base/resources.h"
@@ -19,7 +20,11 @@ struct Invocation {
     const CommonOptions& common;
     const Log& log;
     StopToken stop;
-    Resources resources() const { return granted_resources(common.threads, common.memory); }
+    Communicator& ranks;  ///< that carry it out: this one alone unless the command uses ranks
+    NodeShare share;      ///< of this rank
+    std::function<void()> require_joined;  ///< for commands that write: see run/launch.h
+
+    Resources resources() const { return granted_resources(common.threads, common.memory, share); }
 };
 
 using Run = std::function<ExitCode(const Invocation&)>;
@@ -30,6 +35,8 @@ struct Command {
     std::string example;
     /// Adds the command's options to `app` and returns what runs it.
     std::function<Run(CLI::App& app)> set_up;
+    /// Every rank runs it, and rank 0's answer counts; else rank 0 runs it and the others wait.
+    bool uses_ranks = false;
 };
 
 Command reindex_command();

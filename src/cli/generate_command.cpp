@@ -29,6 +29,7 @@ Command generate_command() {
                    "of the takes: amc or bvh")
                 ->check(CLI::IsMember({"amc", "bvh"}));
             return [=](const Invocation& invocation) {
+                invocation.require_joined();
                 GenerateSummary summary;
                 {
                     Progress progress(invocation.log, "generate", options->frames, "frames");

@@ -21,6 +21,7 @@ Command ingest_command() {
                     request->resources = invocation.resources();
                     std::optional<Slice> part;
                     if (!slice->empty()) part = parse_slice(*slice);
+                    if (!part) invocation.require_joined();  // slices may be tasks of one step
                     const IngestSummary summary =
                         ingest(*request, part, invocation.log, invocation.stop);
                     for (const std::string& reason : summary.reasons) {

@@ -2,38 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "command.h"
 #include "kinetome/base/architecture.h"
 #include "kinetome/base/quote.h"
+#include "kinetome/run/communicator.h"
+#include "run_command.h"
+#include "signals.h"
 
 namespace kinetome::cli {
 namespace {
-
-// A signal handler can reach nothing else: the one flag of the process.
-std::atomic<bool> stop_requested{false};
-
-extern "C" void request_stop(int) {
-    stop_requested = true;
-}
-
-void watch_signals() {
-    struct sigaction action = {};
-    action.sa_handler = request_stop;
-    action.sa_flags = SA_RESETHAND;  // the first signal asks, a second one ends
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGINT, &action, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is reported like a full disk
-}
 
 /// The command line as a shell would take it again.
 std::string command_line(int argc, char** argv) {
@@ -56,33 +37,31 @@ std::vector<Command> all_commands() {
             diff_command(),     export_command()};
 }
 
-ExitCode run_command(const Run& run, const CommonOptions& common, const std::string& again) {
-    Log log;
-    try {
-        log = Log(common.log);
-        const ExitCode code = run({common, log, StopToken(stop_requested)});
-        // A reader that has seen enough (`| head`) is no error.
-        if (std::fflush(stdout) != 0 && errno != EPIPE) {
-            throw StoreError("standard output: cannot write: is its disk full?");
-        }
-        return code;
-    } catch (const Interrupted&) {
-        log.warning("stopped; finished work is kept. To resume: {}", again);
-        return ExitCode::interrupted;
-    } catch (const Error& error) {
-        log.error("{}", error.what());
-        return error.exit_code();
-    } catch (const std::system_error& error) {  // of files and folders, or standard output
-        log.error("{}", error.what());
-        return ExitCode::io;
-    } catch (const std::exception& error) {
-        log.error("internal error: {}. Please report it with the command line: {}", error.what(),
-                  again);
-        return ExitCode::internal;
-    }
+/// All ranks refuse alike; rank 0 says why.
+ExitCode refuse(const std::string& message, const Communicator& ranks) {
+    if (ranks.is_root()) fmt::print(stderr, "kinetome: {}\n", message);
+    return ExitCode::usage;
 }
 
-ExitCode run_main(int argc, char** argv) {
+/// Where two ranks were given different command lines; empty when none were.
+std::string different_command_lines(const std::string& mine, Communicator& ranks) {
+    const auto lines = ranks.gather_to_all(mine);
+    for (size_t rank = 1; rank < lines.size(); ++rank) {
+        if (lines[rank] == lines[0]) continue;
+        return fmt::format(
+            "the ranks of one run were given different commands (rank 0: {}; rank {}: {}): give "
+            "all the same one, or start them apart from each other (srun --mpi=none)",
+            lines[0], rank, lines[rank]);
+    }
+    return {};
+}
+
+ExitCode run_main(int argc, char** argv, const Launch& launch, StopToken stop,
+                  Communicator& ranks) {
+    const std::string again = command_line(argc, argv);
+    const std::string difference = different_command_lines(again, ranks);
+    if (!difference.empty()) return refuse(difference, ranks);
+
     CLI::App app("Kinetome turns a folder of motion-capture takes into an index.", "kinetome");
     app.set_version_flag("--version", std::string("kinetome ") + KINETOME_VERSION);
     app.require_subcommand(1);
@@ -90,50 +69,54 @@ ExitCode run_main(int argc, char** argv) {
     app.footer("kinetome <command> --help tells a command's options, with an example.");
 
     CommonOptions common;
-    std::vector<std::pair<CLI::App*, Run>> runs;
+    std::vector<std::pair<CLI::App*, ChosenCommand>> choices;
     for (const Command& command : all_commands()) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
         sub->footer("Example:\n  " + command.example);
-        runs.emplace_back(sub, command.set_up(*sub));
+        choices.emplace_back(sub, ChosenCommand{command.set_up(*sub), command.uses_ranks, again});
         add_common_options(*sub, common);
     }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {  // --help, --version
-        app.exit(asked);
+        if (ranks.is_root()) app.exit(asked);
         return ExitCode::success;
     } catch (const CLI::ParseError& error) {
         const std::string first = argc > 1 ? argv[1] : "-";
-        const bool known = std::any_of(runs.begin(), runs.end(), [&](const auto& command) {
-            return command.first->get_name() == first;
+        const bool known = std::any_of(choices.begin(), choices.end(), [&](const auto& choice) {
+            return choice.first->get_name() == first;
         });
-        fmt::print(stderr,
-                   "kinetome: {}\nkinetome --help lists the commands, kinetome <command> "
-                   "--help its options.\n",
-                   known || first.starts_with('-')
-                       ? error.what()
-                       : "no command is called " + quote_for_message(first));
-        return ExitCode::usage;
-    } catch (const Error& error) {
-        fmt::print(stderr, "kinetome: {}\n", error.what());
-        return error.exit_code();
+        return refuse(
+            (known || first.starts_with('-') ? error.what()
+                                             : "no command is called " + quote_for_message(first)) +
+                "\nkinetome --help lists the commands, kinetome <command> --help its "
+                "options.",
+            ranks);
+    } catch (const UsageError& error) {
+        return refuse(error.what(), ranks);
     }
-    watch_signals();
-    for (const auto& [sub, run] : runs) {
-        if (sub->parsed()) return run_command(run, common, command_line(argc, argv));
+    for (const auto& [sub, command] : choices) {
+        if (sub->parsed()) return run_command(command, common, launch, stop, ranks);
     }
     return ExitCode::usage;
+}
+
+int start(int argc, char** argv) {
+    try {
+        require_build_architecture();
+        const StopToken stop = watch_signals();
+        const Launch launch = launch_of(environment_of_this_process());
+        const auto ranks = start_ranks(launch);
+        return static_cast<int>(run_main(argc, argv, launch, stop, *ranks));
+    } catch (const Error& error) {
+        fmt::print(stderr, "kinetome: {}\n", error.what());
+        return static_cast<int>(error.exit_code());
+    }
 }
 
 }  // namespace
 }  // namespace kinetome::cli
 
 int main(int argc, char** argv) {
-    try {
-        kinetome::require_build_architecture();
-    } catch (const kinetome::Error& error) {
-        std::fprintf(stderr, "kinetome: %s\n", error.what());
-        return static_cast<int>(error.exit_code());
-    }
-    return static_cast<int>(kinetome::cli::run_main(argc, argv));
+    return kinetome::cli::start(argc, argv);
 }

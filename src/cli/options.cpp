@@ -10,11 +10,11 @@ namespace kinetome::cli {
 void add_common_options(CLI::App& app, CommonOptions& options) {
     const std::string group = "Common";
     app.add_option("--threads", options.threads,
-                   "threads to use (default: what the job was granted)")
+                   "threads to use, in each rank (default: what the job was granted)")
         ->group(group);
     app.add_option_function<std::string>(
            "--memory", [&options](const std::string& text) { options.memory = parse_bytes(text); },
-           "memory to use, such as 8G (default: what the job was granted)")
+           "memory to use, in each rank, such as 8G (default: what the job was granted)")
         ->group(group);
     app.add_option_function<std::string>(
            "--log-format",

@@ -14,6 +14,7 @@ Command publish_command() {
             app.add_flag("--copy", *copy,
                          "copy unchanged files into the new generation instead of linking them");
             return [=](const Invocation& invocation) {
+                invocation.require_joined();
                 const RunSummary summary =
                     publish(*store, invocation.resources(), *copy, invocation.log);
                 print_summary(summary);

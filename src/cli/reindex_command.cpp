@@ -6,8 +6,10 @@ namespace kinetome::cli {
 
 Command reindex_command() {
     return {
-        "reindex", "index a folder of takes: everything, incrementally, and publish (the main job)",
-        "kinetome reindex takes/ --store motion.store --threads 8", [](CLI::App& app) -> Run {
+        .name = "reindex",
+        .summary = "index a folder of takes: everything, incrementally, and publish (the main job)",
+        .example = "kinetome reindex takes/ --store motion.store --threads 8",
+        .set_up = [](CLI::App& app) -> Run {
             auto request = std::make_shared<ReindexRequest>();
             auto flags = std::make_shared<ReindexFlags>(app);
             auto only = std::make_shared<std::vector<std::string>>();
@@ -22,14 +24,17 @@ Command reindex_command() {
             app.add_flag("!--no-publish", request->publish,
                          "leave the publication to `kinetome publish`");
             return [=](const Invocation& invocation) {
+                invocation.require_joined();
                 take_options(*flags, *request);
                 request->resources = invocation.resources();
                 request->only = {only->begin(), only->end()};
+                request->ranks = &invocation.ranks;
                 const RunSummary summary = reindex(*request, invocation.log, invocation.stop);
-                print_summary(summary);
+                if (invocation.ranks.is_root()) print_summary(summary);
                 return exit_code_of(summary);
             };
-        }};
+        },
+        .uses_ranks = true};
 }
 
 }  // namespace kinetome::cli

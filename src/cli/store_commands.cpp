@@ -131,7 +131,8 @@ Command gc_command() {
                 app.add_option("--keep", *keep, "newest generations to keep")
                     ->check(CLI::PositiveNumber)
                     ->capture_default_str();
-                return [=](const Invocation&) {
+                return [=](const Invocation& invocation) {
+                    invocation.require_joined();
                     StoreDirectory directory = StoreDirectory::open(*store);
                     const StoreLock lock = directory.lock_writer();
                     const auto removed = directory.remove_old(*keep);

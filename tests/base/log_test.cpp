@@ -102,6 +102,16 @@ TEST_CASE("a quiet log shows warnings alone, but its file holds everything") {
     CHECK_THAT(read_file(folder / "log"), Contains("info information") && Contains("warning"));
 }
 
+TEST_CASE("lines of one of several processes say which one speaks") {
+    const TemporaryFolder folder;
+    const std::string shown = captured_error_stream([&] {
+        Log log(LogOptions{.file = folder / "log", .prefix = "rank 3: "});
+        log.warning("careful");
+    });
+    CHECK_THAT(shown, Contains(" warning rank 3: careful\n"));
+    CHECK_THAT(read_file(folder / "log"), Contains(" warning rank 3: careful\n"));
+}
+
 TEST_CASE("a log file is appended to, and what is logged is in it at once") {
     const TemporaryFolder folder;
     folder.write("log", "of an earlier run\n");

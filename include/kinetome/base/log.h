@@ -19,6 +19,7 @@ struct LogOptions {
     LogFormat format = LogFormat::text;
     bool quiet = false;            ///< warnings and errors only on the terminal
     std::filesystem::path file{};  ///< when not empty, every line also goes there, appended
+    std::string prefix{};          ///< of every message: who speaks, such as "rank 3: "
 };
 
 /// Timed lines on standard error and, when asked, in a file. Copies share the sinks; thread-safe.
@@ -55,6 +56,7 @@ class Log {
     std::shared_ptr<spdlog::sinks::dist_sink_mt> sinks_;
     std::shared_ptr<spdlog::logger> logger_;
     LogFormat format_ = LogFormat::text;
+    std::string prefix_;
     bool quiet_ = false;
     bool on_terminal_ = false;
 };
