@@ -50,6 +50,7 @@ Command plan_command() {
                     ReindexRequest& run = options->request.run;
                     run.options = flags->resolve();
                     run.resources = invocation.resources();
+                    if (options->open) invocation.require_joined();
                     run.only = {options->only.begin(), options->only.end()};
                     Survey survey = options->open
                                         ? open_run(run, invocation.log, invocation.stop).survey

@@ -21,6 +21,7 @@ TEST_CASE("one of several tasks that do not know each other refuses to write", "
     const std::vector<std::vector<std::string>> writing = {
         {"reindex", takes, "--store", store},
         {"ingest", takes, "--store", store},
+        {"plan", takes, "--store", store, "--open"},
         {"generate", "--frames", "100", "-o", store},
     };
     for (const auto& words : writing) {
