@@ -39,6 +39,20 @@ StageTask task_of(const RunPlan& plan, const PlannedWork& work, const FinishedPl
     return task;
 }
 
+/// What a piece of work cost all who made it: the first one's seconds, everybody's processor time,
+/// the largest peak.
+Cost cost_of_all(Cost mine, Communicator& ranks) {
+    Packer out;
+    out.put(mine.cpu_seconds).put(mine.peak_bytes);
+    mine.cpu_seconds = 0;
+    for (std::string& part : ranks.gather(out.take())) {
+        Unpacker in(std::move(part));
+        mine.cpu_seconds += in.get<double>();
+        mine.peak_bytes = std::max(mine.peak_bytes, in.get<uint64_t>());
+    }
+    return mine;
+}
+
 /// Makes an artifact, alone or together with the other ranks; rank 0 of those who make it has the
 /// result.
 std::optional<FinishedWork> make(const RunPlan& plan, const PlannedWork& work,
@@ -54,6 +68,7 @@ std::optional<FinishedWork> make(const RunPlan& plan, const PlannedWork& work,
     }
     const Meter meter;
     StageResult result = work.stage->make(context, task);
+    const Cost cost = ranks ? cost_of_all(meter.cost(), *ranks) : meter.cost();
     if (!context.is_root()) return std::nullopt;
     Receipt receipt;
     receipt.stage = work.stage->name;
@@ -61,7 +76,7 @@ std::optional<FinishedWork> make(const RunPlan& plan, const PlannedWork& work,
     receipt.key = work.key;
     receipt.file = std::move(result.file);
     receipt.clips = std::move(result.clips);
-    receipt.cost = meter.cost();
+    receipt.cost = cost;
     log.info("{}: made in {:.2f} s, {}", work.file_name, receipt.cost.seconds,
              describe_bytes(receipt.file.bytes));
     return workspace.commit(std::move(receipt));
