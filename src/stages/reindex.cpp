@@ -8,9 +8,9 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
-#include "kinetome/base/packing.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/run/meter.h"
+#include "rank_orders.h"
 #include "run_in_progress.h"
 
 namespace kinetome {
@@ -156,44 +156,29 @@ RunRecord open_run(const ReindexRequest& request, const Log& terminal, const Sto
 
 namespace {
 
-/// What rank 0 tells the others, who find nothing by themselves: a file system may show them for a
-/// while what was, not what is.
-struct Orders {
-    RunRecord record;
-    FinishedPlan finished;
-};
+/// What rank 0 does beyond what all ranks do. The store is its own.
+RunSummary lead(const ReindexRequest& request, StoreDirectory& store, Communicator& ranks,
+                const Log& terminal, const StopToken& stop, const Meter& meter) {
+    const auto opened = find_opened(request, store);
+    RunInProgress run(store, terminal);
+    run.workspace().remove_leftovers();
 
-std::string pack_orders(const RunPlan& plan, const FinishedPlan& finished) {
-    Packer out;
-    out.put(std::string_view(write_run_record(plan.survey, plan.options)));
-    out.put(std::string_view(plan.survey.remedy_for_change));
-    out.put(std::string_view(pack_finished(finished)));
-    return out.take();
-}
-
-Orders unpack_orders(std::string bytes) {
-    Unpacker in(std::move(bytes));
-    Orders orders;
-    orders.record = parse_run_record(in.get_text(), "the run's record");
-    orders.record.survey.remedy_for_change = in.get_text();
-    orders.finished = unpack_finished(in.get_text());
-    return orders;
-}
-
-/// A rank's part in a run that rank 0 leads.
-void assist(const ReindexRequest& request, Communicator& ranks, Log log, const StopToken& stop) {
-    const bool survey = unpacked<uint8_t>(ranks.broadcast({})) != 0;
-    if (survey) {
-        const Workers workers(request.resources.threads, &ranks);
-        survey_corpus(request.corpus, workers, log, stop);
-    }
-    Orders orders = unpack_orders(ranks.broadcast({}));
-    const RunPlan plan(std::move(orders.record.survey), orders.record.options);
-    VerifiedFiles verified;
-    const Workspace workspace(StoreDirectory::open(request.store), nullptr, verified);
-    log.add_file(workspace.folder() / fmt::format("log-of-rank-{}.txt", ranks.rank()));
-    carry_out(plan, std::move(orders.finished), selection_of(request),
-              {workspace, request.resources, log, stop, ranks});
+    order_survey(!opened, ranks);
+    const RunRecord record = opened ? *opened : survey_and_enter(request, run, "", stop);
+    const RunPlan plan(record.survey, record.options);
+    tell(plan, run.log());
+    const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
+    const FinishedPlan before = find_finished(plan, run.workspace());
+    order_work(plan, before, ranks);
+    const FinishedPlan after =
+        carry_out(plan, before, selection_of(request),
+                  {run.workspace(), request.resources, run.log(), stop, ranks});
+    Publication publication = request.publish
+                                  ? publish_and_forget(run, plan, after, request.copy)
+                                  : prepare_publication(plan, after, run.last(), run.log());
+    RunSummary summary = sum_up(std::move(publication), plan, before, after, meter);
+    summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, survey_peak);
+    return summary;
 }
 
 }  // namespace
@@ -207,32 +192,21 @@ RunSummary reindex(const ReindexRequest& request, const Log& terminal, const Sto
     SerialCommunicator alone;
     Communicator& ranks = request.ranks ? *request.ranks : alone;
     if (!ranks.is_root()) {
-        assist(request, ranks, terminal, stop);
+        assist(request, selection_of(request), ranks, terminal, stop);
         return {};
     }
-
     StoreDirectory store = open_store(request);
     const StoreLock lock = store.lock_writer();
-    const auto opened = find_opened(request, store);
-    RunInProgress run(store, terminal);
-    run.workspace().remove_leftovers();
-
-    ranks.broadcast(packed(uint8_t{!opened}));
-    const RunRecord record = opened ? *opened : survey_and_enter(request, run, "", stop);
-    const RunPlan plan(record.survey, record.options);
-    tell(plan, run.log());
-    const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
-    const FinishedPlan before = find_finished(plan, run.workspace());
-    ranks.broadcast(pack_orders(plan, before));
-    const FinishedPlan after =
-        carry_out(plan, before, selection_of(request),
-                  {run.workspace(), request.resources, run.log(), stop, ranks});
-    Publication publication = request.publish
-                                  ? publish_and_forget(run, plan, after, request.copy)
-                                  : prepare_publication(plan, after, run.last(), run.log());
-    RunSummary summary = sum_up(std::move(publication), plan, before, after, meter);
-    summary.cost.peak_bytes = std::max(summary.cost.peak_bytes, survey_peak);
-    return summary;
+    try {
+        return lead(request, store, ranks, terminal, stop, meter);
+    } catch (const Error& error) {
+        ranks.fail(error.exit_code(),
+                   error.what());  // before the lock goes: the others still write
+        throw;
+    } catch (const std::exception& error) {
+        ranks.fail(ExitCode::internal, error.what());
+        throw;
+    }
 }
 
 IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& slice,
