@@ -61,6 +61,19 @@ std::string_view advice_for(int error_number) {
     }
 }
 
+/// False, with errno set, when not all could be written.
+bool write_all(const Descriptor& file, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t put = ::write(file.number(), bytes.data(), bytes.size());
+        if (put >= 0) {
+            bytes.remove_prefix(static_cast<size_t>(put));
+        } else if (errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// A new file beside `path`, removed on destruction unless it was renamed to it.
 class TemporaryFile {
   public:
@@ -72,14 +85,7 @@ class TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     void write(std::string_view text) {
-        while (!text.empty()) {
-            const ssize_t put = ::write(file_.number(), text.data(), text.size());
-            if (put >= 0) {
-                text.remove_prefix(static_cast<size_t>(put));
-            } else if (errno != EINTR) {
-                fail("write");
-            }
-        }
+        if (!write_all(file_, text)) fail("write");
     }
 
     void sync_and_rename() {
@@ -140,6 +146,20 @@ void write_file_atomically(const fs::path& path, std::string_view text) {
     file.write(text);
     file.sync_and_rename();
     fsync_directory(folder_of(path));
+}
+
+void copy_to_new_file(const fs::path& source, const fs::path& target) {
+    Descriptor file(target, O_WRONLY | O_CREAT | O_EXCL, 0666);
+    if (!file.valid()) throw create_error("create", target, errno);
+    try {
+        read_blocks(source, [&](std::string_view block) {
+            if (!write_all(file, block)) throw create_error("write", target, errno);
+        });
+        if (!file.close()) throw create_error("write", target, errno);
+    } catch (...) {
+        ::unlink(target.c_str());
+        throw;
+    }
 }
 
 void fsync_path(const fs::path& path) {

@@ -10,6 +10,7 @@ Command ingest_command() {
             "kinetome ingest takes/ --store motion.store --slice 3/8", [](CLI::App& app) -> Run {
                 auto request = std::make_shared<ReindexRequest>();
                 auto flags = std::make_shared<ReindexFlags>(app);
+                auto node_scratch = add_node_scratch(app);
                 auto slice = std::make_shared<std::string>();
                 app.add_option("CORPUS", request->corpus, "folder of takes")->required();
                 app.add_option("--store", request->store, "store to write to")->required();
@@ -17,8 +18,9 @@ Command ingest_command() {
                 app.add_flag("--join", request->join,
                              "take part in the run that `kinetome plan --open` opened");
                 return [=](const Invocation& invocation) {
-                    take_options(*flags, *request);
                     request->resources = invocation.resources();
+                    request->resources.node_scratch = *node_scratch;
+                    take_options(*flags, *request);
                     std::optional<Slice> part;
                     if (!slice->empty()) part = parse_slice(*slice);
                     if (!part) invocation.require_joined();  // slices may be tasks of one step

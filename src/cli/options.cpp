@@ -86,4 +86,15 @@ void take_options(const ReindexFlags& flags, ReindexRequest& request) {
     }
 }
 
+std::shared_ptr<std::filesystem::path> add_node_scratch(CLI::App& app) {
+    auto folder = std::make_shared<std::filesystem::path>();
+    app.add_option(
+           "--node-scratch", *folder,
+           "folder on this machine's own disk where files are put together, before they are "
+           "copied into the store")
+        ->check(CLI::ExistingDirectory)
+        ->group("Files");
+    return folder;
+}
+
 }  // namespace kinetome::cli

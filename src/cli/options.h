@@ -54,4 +54,7 @@ class ReindexFlags {
 /// The options of a run: all of them, or those that the run to be joined must agree with.
 void take_options(const ReindexFlags& flags, ReindexRequest& request);
 
+/// --node-scratch; what it points to is set by parsing.
+std::shared_ptr<std::filesystem::path> add_node_scratch(CLI::App& app);
+
 }  // namespace kinetome::cli

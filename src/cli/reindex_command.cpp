@@ -12,6 +12,7 @@ Command reindex_command() {
         .set_up = [](CLI::App& app) -> Run {
             auto request = std::make_shared<ReindexRequest>();
             auto flags = std::make_shared<ReindexFlags>(app);
+            auto node_scratch = add_node_scratch(app);
             auto only = std::make_shared<std::vector<std::string>>();
             app.add_option("CORPUS", request->corpus, "folder of takes")->required();
             app.add_option("--store", request->store, "store to write to")->required();
@@ -25,8 +26,9 @@ Command reindex_command() {
                          "leave the publication to `kinetome publish`");
             return [=](const Invocation& invocation) {
                 invocation.require_joined();
-                take_options(*flags, *request);
                 request->resources = invocation.resources();
+                request->resources.node_scratch = *node_scratch;
+                take_options(*flags, *request);
                 request->only = {only->begin(), only->end()};
                 request->ranks = &invocation.ranks;
                 const RunSummary summary = reindex(*request, invocation.log, invocation.stop);

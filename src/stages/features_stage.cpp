@@ -70,8 +70,7 @@ uint64_t largest_clip(const FrameShardReader& frames) {
 
 StageResult make_features(const StageContext& context, const StageTask& task) {
     const FrameShardReader frames(context.workspace.open(*task.inputs_of("frames").front()));
-    FeatureShardWriter writer(task.output, task.header,
-                              parse_compression(context.options.frames.compression));
+    FeatureShardWriter writer(task.output, task.header, context.writing());
     int64_t total = 0;
     for (const FrameShardClip& clip : frames.clips()) total += clip.frames;
     Progress progress(context.log, "features " + task.shard->cut, total, "frames");

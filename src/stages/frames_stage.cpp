@@ -154,8 +154,7 @@ uint64_t largest_take(const Survey& survey, const Shard& shard) {
 
 StageResult make_frames(const StageContext& context, const StageTask& task) {
     const Shard& shard = *task.shard;
-    FrameShardWriter writer(task.output, task.header,
-                            parse_compression(context.options.frames.compression));
+    FrameShardWriter writer(task.output, task.header, context.writing());
     SkeletonFiles skeletons(context);
     Progress progress(context.log, "frames " + shard.cut, shard.claimed_frames, "frames");
     StageResult result;

@@ -141,8 +141,7 @@ StageResult make_motion_strings(const StageContext& context, const StageTask& ta
         });
     StageResult result;
     if (!context.is_root()) return result;
-    ArtifactWriter file(task.output, task.header,
-                        parse_compression(context.options.frames.compression));
+    ArtifactWriter file(task.output, task.header, context.writing());
     for (size_t i = 0; i < partitions.size(); ++i) {
         write(file, partitions[i], spelled[i]);
         const int64_t letters = spelled[i].string.size();

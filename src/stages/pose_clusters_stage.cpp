@@ -148,8 +148,7 @@ StageResult make_pose_clusters(const StageContext& context, const StageTask& tas
         });
     StageResult result;
     if (!context.is_root()) return result;
-    ArtifactWriter file(task.output, task.header,
-                        parse_compression(context.options.frames.compression));
+    ArtifactWriter file(task.output, task.header, context.writing());
     for (size_t i = 0; i < partitions.size(); ++i) {
         if (fitted[i].is_fitted()) {
             write_pose_clusters(file, partitions[i].path, fitted[i].pca, fitted[i].clusters);

@@ -137,33 +137,60 @@ class Column {
     bool created_ = false;
 };
 
-/// A name beside `path` that no other writer of any process uses.
-fs::path temporary_beside(const fs::path& path) {
+/// A name for an unfinished file that no other writer of any process uses.
+fs::path temporary_in(const fs::path& folder, const fs::path& file_name) {
     for (int attempt = 0;; ++attempt) {
-        fs::path temporary = path;
-        temporary.replace_filename(
-            fmt::format(".{}.writing-{}-{}", path.filename().string(), ::getpid(), attempt));
+        fs::path temporary =
+            folder / fmt::format(".{}.writing-{}-{}", file_name.string(), ::getpid(), attempt);
         if (!fs::exists(fs::symlink_status(temporary))) return temporary;
     }
+}
+
+/// A finished file, copied beside `path` from another disk; its bytes are on the disk and have the
+/// hash.
+fs::path copy_beside(const fs::path& path, const fs::path& file, const Digest& hash) {
+    fs::path copy = temporary_in(path.parent_path(), path.filename());
+    try {
+        copy_to_new_file(file, copy);
+        fsync_path(copy);
+        require_hash(copy, hash);
+    } catch (...) {
+        ::unlink(copy.c_str());
+        throw;
+    }
+    return copy;
 }
 
 }  // namespace
 
 struct ArtifactWriter::State {
     fs::path path;
+    WriteOptions options;
     fs::path temporary;
-    Compression compression;
     std::unique_ptr<h5::OutputFile> file;
     std::map<std::string, Column, std::less<>> columns;
     bool renamed = false;
 
-    State(fs::path target, Compression how)
-        : path(std::move(target)), temporary(temporary_beside(path)), compression(how) {
-        file = std::make_unique<h5::OutputFile>(temporary, path);
+    State(fs::path target, const WriteOptions& how)
+        : path(std::move(target)),
+          options(how),
+          temporary(temporary_in(folder(), path.filename())) {
+        file = std::make_unique<h5::OutputFile>(temporary, folder() / path.filename());
     }
     ~State() {
         file.reset();
         if (!renamed) ::unlink(temporary.c_str());
+    }
+
+    bool is_elsewhere() const { return !options.node_scratch.empty(); }
+    /// Where the file is put together.
+    fs::path folder() const { return is_elsewhere() ? options.node_scratch : path.parent_path(); }
+
+    /// Leaves the disk that the file was put together on.
+    void move_beside(const Digest& hash) {
+        fs::path copy = copy_beside(path, temporary, hash);
+        ::unlink(temporary.c_str());
+        temporary = std::move(copy);
     }
 
     Column& column(std::string_view dataset, ElementType type) {
@@ -183,8 +210,9 @@ uint64_t dataset_bytes(int64_t row_bytes, int64_t rows) {
     return static_cast<uint64_t>(stored * row_bytes + description_bytes);
 }
 
-ArtifactWriter::ArtifactWriter(fs::path path, const ArtifactHeader& header, Compression compression)
-    : state_(std::make_unique<State>(std::move(path), compression)) {
+ArtifactWriter::ArtifactWriter(fs::path path, const ArtifactHeader& header,
+                               const WriteOptions& options)
+    : state_(std::make_unique<State>(std::move(path), options)) {
     const std::vector<h5::Attribute> attributes{{"kinetome_format", int64_t{header.format_version}},
                                                 {"stage", header.stage},
                                                 {"key", header.key.hex()}};
@@ -197,7 +225,8 @@ ArtifactWriter& ArtifactWriter::operator=(ArtifactWriter&&) noexcept = default;
 
 void ArtifactWriter::create(const DatasetSpec& spec) {
     require_valid(spec);
-    const bool added = state_->columns.try_emplace(spec.path, spec, state_->compression).second;
+    const bool added =
+        state_->columns.try_emplace(spec.path, spec, state_->options.compression).second;
     if (!added) throw std::logic_error("dataset " + spec.path + " is made twice");
 }
 
@@ -257,8 +286,9 @@ ArtifactRecord ArtifactWriter::close() {
         record.datasets.emplace(path, column.digest());
     }
     state_->file->close();
-    fsync_path(state_->temporary);
+    if (!state_->is_elsewhere()) fsync_path(state_->temporary);
     record.hash = digest_file(state_->temporary, &record.bytes);
+    if (state_->is_elsewhere()) state_->move_beside(record.hash);
     if (::rename(state_->temporary.c_str(), state_->path.c_str()) != 0) {
         throw create_error("create", state_->path, errno);
     }

@@ -19,8 +19,8 @@ std::span<const T> one(const T& value) {
 }  // namespace
 
 FeatureShardWriter::FeatureShardWriter(const std::filesystem::path& path,
-                                       const ArtifactHeader& header, Compression compression)
-    : file_(path, header, compression) {}
+                                       const ArtifactHeader& header, const WriteOptions& options)
+    : file_(path, header, options) {}
 
 void FeatureShardWriter::begin_class(const std::string& name, const FeatureClass& shared) {
     const auto constant = [&](const char* what, ElementType type, const char* units,

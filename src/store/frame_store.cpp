@@ -81,8 +81,8 @@ Eigen::Vector3d vector_at(const std::vector<double>& flat, size_t joint) {
 }  // namespace
 
 FrameShardWriter::FrameShardWriter(const std::filesystem::path& path, const ArtifactHeader& header,
-                                   Compression compression)
-    : file_(path, header, compression) {}
+                                   const WriteOptions& options)
+    : file_(path, header, options) {}
 
 void FrameShardWriter::begin_class(const std::string& name, const Skeleton& skeleton) {
     const Paths at(name);

@@ -54,22 +54,16 @@ bool links_are_refused(int error_number) {
     return std::find(refusals.begin(), refusals.end(), error_number) != refusals.end();
 }
 
-void copy_to(const fs::path& source, const fs::path& target) {
-    std::error_code error;
-    fs::copy_file(source, target, error);
-    if (error) throw create_error("create", target, error.value());
-}
-
 void link_or_copy(const fs::path& source, const fs::path& target, bool copy) {
     std::error_code error;
     if (!fs::is_regular_file(source, error)) {
         throw StoreError(path_for_message(source.string()) +
                          " is missing: run the same command again to remake it");
     }
-    if (copy) return copy_to(source, target);
+    if (copy) return copy_to_new_file(source, target);
     if (::link(source.c_str(), target.c_str()) == 0) return;
     if (!links_are_refused(errno)) throw create_error("create", target, errno);
-    copy_to(source, target);
+    copy_to_new_file(source, target);
 }
 
 }  // namespace

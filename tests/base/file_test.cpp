@@ -161,3 +161,14 @@ TEST_CASE("syncing what is not there is reported") {
     CHECK_THROWS_AS(fsync_path(folder / "missing"), CreateError);
     CHECK_THROWS_AS(fsync_directory(file), CreateError);
 }
+
+TEST_CASE("a copy has the same bytes, and never replaces a file") {
+    const TemporaryFolder folder;
+    const std::string bytes(3'000'000, 'x');
+    const auto source = folder.write("source", bytes);
+    copy_to_new_file(source, folder / "copy");
+    CHECK(read_file(folder / "copy") == bytes);
+    CHECK_THROWS_AS(copy_to_new_file(source, folder / "copy"), CreateError);
+    CHECK_THROWS_AS(copy_to_new_file(folder / "none", folder / "other"), StoreError);
+    CHECK_FALSE(std::filesystem::exists(folder / "other"));
+}

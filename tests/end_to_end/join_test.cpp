@@ -42,7 +42,7 @@ std::string record_in(const StoreOnDisk& store) {
 }  // namespace
 
 TEST_CASE("the parts of a run that was opened make what one command makes", "[join]") {
-    const TemporaryFolder folder;
+    const TemporaryFolder folder, scratch;
     const fs::path corpus = folder / "takes";
     generate_corpus(corpus, 24000, 3);
     const StoreOnDisk whole(folder / "whole"), store(folder / "store");
@@ -53,14 +53,19 @@ TEST_CASE("the parts of a run that was opened make what one command makes", "[jo
     // Not surveyed again: what came later waits for the next run.
     write_text(corpus / "01" / "01_88.amc", "not there when the run was opened");
     Process first(program(join("ingest", corpus, store.path(), {"--slice", "1/2"})));
-    require_program(join("ingest", corpus, store.path(), {"--slice", "2/2"}));
+    // One part on another disk, which makes no difference.
+    const std::vector<std::string> elsewhere = {"--node-scratch", scratch.path().string()};
+    require_program(
+        join("ingest", corpus, store.path(), {"--slice", "2/2", elsewhere[0], elsewhere[1]}));
     CHECK(first.wait().exit_code == 0);
 
-    const CommandResult rest = require_program(
-        join("reindex", corpus, store.path(), {"--no-publish", "--clusters", "60"}));
+    const CommandResult rest =
+        require_program(join("reindex", corpus, store.path(),
+                             {"--no-publish", "--clusters", "60", elsewhere[0], elsewhere[1]}));
     CHECK(contains(rest.output, "not published: `kinetome publish STORE`"));
     CHECK(RunLog(rest.errors).reused == whole.artifacts("frames"));
     CHECK_FALSE(store.current());
+    CHECK(fs::is_empty(scratch.path()));
     require_program({"publish", store.name()});
     CHECK(store.artifact_bytes() == whole.artifact_bytes());
     CHECK(store.digests() == whole.digests());

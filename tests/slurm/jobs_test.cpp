@@ -55,7 +55,9 @@ TEST_CASE("three jobs publish what one process makes, whatever the folders are c
     const fs::path corpus = folder / "it's a \"corpus\" $(x)", home = folder / "50 %j\nstores";
     generate_corpus(corpus, 24000, 3);
     const StoreOnDisk store(home / "store");
-    const JobChain chain(corpus, store.path(), few_clusters);
+    std::vector<std::string> options = {"--node-scratch", folder.path().string()};
+    options.insert(options.end(), few_clusters.begin(), few_clusters.end());
+    const JobChain chain(corpus, store.path(), options);
     chain.require_published();
     CHECK(store.digests() == serial_digests(corpus, few_clusters));
     CHECK(contains(chain.log("reindex-" + chain.reindex), "not published"));

@@ -82,11 +82,11 @@ inline void append(kinetome::ArtifactWriter& writer, const Data& data, size_t fi
 }
 
 /// Writes all data, `piece` rows at a time (0: all at once).
-inline kinetome::ArtifactRecord write(
-    const std::filesystem::path& path, const std::vector<Data>& all, size_t piece = 0,
-    kinetome::Compression compression = kinetome::Compression::none) {
+inline kinetome::ArtifactRecord write(const std::filesystem::path& path,
+                                      const std::vector<Data>& all, size_t piece = 0,
+                                      const kinetome::WriteOptions& options = {}) {
     kinetome::ArtifactWriter writer(path, {.stage = "example", .key = kinetome::digest_of("key")},
-                                    compression);
+                                    options);
     for (const Data& data : all) {
         writer.create(data.spec);
         const size_t step = piece > 0 ? piece : data.rows();

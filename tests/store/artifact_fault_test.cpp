@@ -130,6 +130,30 @@ TEST_CASE("a file system that is full says so, with advice") {
     CHECK(record.bytes > 0);
 }
 
+TEST_CASE("whichever of two disks is full is named, and nothing is left on either") {
+    const TemporaryFolder small, large;
+    if (::mount("tmpfs", small.path().c_str(), "tmpfs", 0, "size=1m") != 0) {
+        WARN("SKIPPED: mounting a file system of 1 MiB needs root");
+        return;
+    }
+    const auto message_of = [&](const TemporaryFolder& place, const TemporaryFolder& scratch) {
+        try {
+            write(place / "full.h5", every_type(20'000), 0, {Compression::none, scratch.path()});
+        } catch (const CreateError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string in_scratch = message_of(large, small), in_place = message_of(small, large);
+    const size_t left = files_in(small.path()) + files_in(large.path());
+    ::umount2(small.path().c_str(), MNT_DETACH);
+    for (const std::string& message : {in_scratch, in_place}) {
+        CHECK_THAT(message,
+                   Contains(small.path().string()) && Contains("full.h5") && Contains("disk full"));
+    }
+    CHECK(left == 0);
+}
+
 TEST_CASE("any flipped bit of a file is refused before HDF5 sees it, naming the file") {
     const TemporaryFolder folder;
     const auto path = folder / "a.h5";

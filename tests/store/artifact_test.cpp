@@ -95,6 +95,25 @@ TEST_CASE("the same rows give the same bytes, however they are split among calls
     }
 }
 
+TEST_CASE(
+    "a file that is put together on another disk has the same bytes, and leaves nothing there") {
+    const TemporaryFolder folder, scratch;
+    const ArtifactRecord near = write(folder / "near.h5", every_type(5000));
+    const ArtifactRecord far =
+        write(folder / "far.h5", every_type(5000), 0, {Compression::none, scratch.path()});
+    CHECK(far.hash == near.hash);
+    CHECK(far.bytes == near.bytes);
+    CHECK(read_file(folder / "far.h5") == read_file(folder / "near.h5"));
+    CHECK(std::filesystem::is_empty(scratch.path()));
+    {
+        ArtifactWriter unfinished(folder / "far.h5", {.stage = "example"},
+                                  {Compression::none, scratch.path()});
+        CHECK_FALSE(std::filesystem::is_empty(scratch.path()));
+    }
+    CHECK(std::filesystem::is_empty(scratch.path()));
+    CHECK(digest_file(folder / "far.h5") == near.hash);
+}
+
 TEST_CASE("a file tells nothing of the time when it was made") {
     const TemporaryFolder folder;
     const std::vector<Data> all = every_type(10);

@@ -26,6 +26,10 @@ void read_blocks(const std::filesystem::path& path,
 /// folder. Throws CreateError; then the temporary is gone and what was at `path` is still there.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
+/// Copies a file of the store to a name where nothing is yet. Not synced. Throws StoreError for the
+/// source, CreateError for the target; then nothing is left there.
+void copy_to_new_file(const std::filesystem::path& source, const std::filesystem::path& target);
+
 /// Returns when the file's bytes are on the disk. Throws CreateError.
 void fsync_path(const std::filesystem::path& path);
 

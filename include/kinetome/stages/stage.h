@@ -30,6 +30,10 @@ struct StageContext {
     StopToken stop;
     Communicator* ranks = nullptr;  ///< that make the artifact together; null: this process alone
 
+    /// How artifacts are written here.
+    WriteOptions writing() const {
+        return {parse_compression(options.frames.compression), resources.node_scratch};
+    }
     Workers workers() const { return {resources.threads, ranks}; }
     /// Whether this rank writes the artifact; the others return an empty result.
     bool is_root() const { return workers().is_root(); }

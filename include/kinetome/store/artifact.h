@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "kinetome/base/digest.h"
@@ -44,6 +45,18 @@ struct ArtifactRecord {
 /// whole chunks (once it outgrows the first), and its description.
 uint64_t dataset_bytes(int64_t row_bytes, int64_t rows);
 
+/// How an artifact is written; its content does not depend on it.
+struct WriteOptions {
+    WriteOptions(Compression how = Compression::none, std::filesystem::path scratch = {})
+        : compression(how), node_scratch(std::move(scratch)) {}
+
+    Compression compression;
+    /// Existing folder, on a disk nearer than the artifact's, where the file is put together before
+    /// it is copied beside its place, and the copy checked. "": it is put together beside its
+    /// place.
+    std::filesystem::path node_scratch;
+};
+
 /// Writes one artifact. Until close() nothing exists under the final name; a writer destroyed
 /// before that removes its temporary file. The file's bytes depend on the rows and on the order in
 /// which datasets fill up, not on how a dataset's rows are split among calls.
@@ -53,7 +66,7 @@ class ArtifactWriter {
   public:
     /// The folder must exist.
     ArtifactWriter(std::filesystem::path path, const ArtifactHeader& header,
-                   Compression compression = Compression::none);
+                   const WriteOptions& options = {});
     ~ArtifactWriter();
     ArtifactWriter(ArtifactWriter&&) noexcept;
     ArtifactWriter& operator=(ArtifactWriter&&) noexcept;

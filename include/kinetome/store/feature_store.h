@@ -38,7 +38,7 @@ struct FeatureClass {
 class FeatureShardWriter {
   public:
     FeatureShardWriter(const std::filesystem::path& path, const ArtifactHeader& header,
-                       Compression compression);
+                       const WriteOptions& options);
     void begin_class(const std::string& name, const FeatureClass& shared);
     bool has_class(const std::string& name) const { return classes_.count(name) > 0; }
     void add(const ClipFeatures& clip);

@@ -24,7 +24,7 @@ struct StoredClip {
 class FrameShardWriter {
   public:
     FrameShardWriter(const std::filesystem::path& path, const ArtifactHeader& header,
-                     Compression compression);
+                     const WriteOptions& options);
     void add(const StoredClip& clip);
     ArtifactRecord close();
 
