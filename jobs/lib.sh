@@ -13,8 +13,7 @@ run_step() {
   for attempt in 1 2 3; do
     code=0
     rm -f -- "$exit_file"
-    # --wait: when a rank has ended, for whatever reason, the others are given that long.
-    srun --mpi="${KINETOME_SRUN_MPI:-pmix}" --wait=60 --cpus-per-task="$SLURM_CPUS_PER_TASK" \
+    srun --mpi="${KINETOME_SRUN_MPI:-pmix}" --kill-on-bad-exit=1 --cpus-per-task="$SLURM_CPUS_PER_TASK" \
       "$jobs/rank.sh" "$exit_file" "$@" || code=$?
     if [[ -s $exit_file ]]; then
       return "$(<"$exit_file")"

@@ -21,8 +21,8 @@ die() { # CODE MESSAGE
 
 find_kinetome() {
   local candidate
-  for candidate in "${KINETOME:-}" "$jobs/kinetome" "$jobs/../../../bin/kinetome" "$jobs/../build/release/kinetome" \
-    "$(type -P kinetome || true)"; do
+  for candidate in "${KINETOME:-}" "$jobs/kinetome" "$jobs/../../../bin/kinetome" "$jobs/../build/mpi/kinetome" \
+    "$jobs/../build/release/kinetome" "$(type -P kinetome || true)"; do
     [[ -n $candidate && -x $candidate ]] || continue
     realpath -- "$candidate"
     return

@@ -26,6 +26,9 @@ TEST_CASE("a project elsewhere finds the installed package, builds with it and r
                    "-DCMAKE_CXX_COMPILER=" KINETOME_COMPILER});
     require_cmake({"--build", build.string()});
 
+    const fs::path jobs = prefix / "share" / "kinetome" / "jobs";
+    CHECK(contains(run({.words = {jobs / "submit.sh", "--help"}}).output, "--max-requeues"));
+
     const std::vector<std::string> store = {corpus.store().string()};
     const CommandResult consumer = run({.words = {(build / "consumer").string(), store[0]}});
     CHECK(consumer.exit_code == 0);

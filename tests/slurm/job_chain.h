@@ -8,6 +8,13 @@
 #include "end_to_end/store_on_disk.h"
 #include "slurm_cluster.h"
 
+/// Ranks of the MPI job, where the program can have several: one a node.
+#ifdef KINETOME_WITH_MPI
+inline const std::string rank_count = "2";
+#else
+inline const std::string rank_count = "1";
+#endif
+
 /// Cancelled, at the latest, with this object.
 class JobChain {
   public:
@@ -15,7 +22,8 @@ class JobChain {
         : store_(store) {
         ::setenv("KINETOME", KINETOME_PROGRAM, 0);
         ::setenv("KINETOME_POLL_SECONDS", "0.2", 0);
-        std::vector<std::string> words = {jobs + "submit.sh", corpus, store};
+        std::vector<std::string> words = {jobs + "submit.sh", corpus,    store,     "--nodes",
+                                          rank_count,         "--ranks", rank_count};
         words.insert(words.end(), more.begin(), more.end());
         const CommandResult result = run({.words = words, .time_limit = 30});
         INFO(result.errors);
@@ -33,7 +41,7 @@ class JobChain {
     static std::string state(const std::string& job) {
         return ask({"squeue", "-h", "-t", "all", "-j", job, "-o", "%T"});
     }
-    static std::string node(const std::string& job) {
+    static std::string nodes(const std::string& job) {
         return ask({"squeue", "-h", "-t", "all", "-j", job, "-o", "%N"});
     }
     std::string log(const std::string& name) const {

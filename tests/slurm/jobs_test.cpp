@@ -5,7 +5,7 @@
 
 namespace {
 
-constexpr int some_quarantined = 3, interrupted = 75;
+constexpr int some_quarantined = 3, interrupted = 75, killed = 128 + SIGKILL;
 
 const std::vector<std::string> few_clusters = {"--", "--clusters", "60", "--shard-frames", "8192"};
 
@@ -13,7 +13,7 @@ const std::vector<std::string> few_clusters = {"--", "--clusters", "60", "--shar
 std::vector<std::string> slow_clustering(std::vector<std::string> submit_options = {}) {
     const std::vector<std::string> reindex_options = {
         "--", "--clusters",       "400", "--shard-frames", "8192", "--min-gain",
-        "0",  "--max-iterations", "150"};
+        "0",  "--max-iterations", "100"};
     submit_options.insert(submit_options.end(), reindex_options.begin(), reindex_options.end());
     return submit_options;
 }
@@ -92,7 +92,7 @@ TEST_CASE("a killed task is reported, its dependents are cancelled, and submitti
         for (const pid_t task : tasks) ::kill(task, SIGKILL);
         const CommandResult ended = chain.wait();
         INFO(ended.output);
-        CHECK(ended.exit_code != 0);
+        CHECK(ended.exit_code == killed);
         CHECK(contains(ended.output, "(ingest) failed: see " + store.name()));
         CHECK(contains(ended.output, "its dependents were cancelled"));
         CHECK(JobChain::state(chain.reindex) == "CANCELLED");
@@ -104,8 +104,31 @@ TEST_CASE("a killed task is reported, its dependents are cancelled, and submitti
     CHECK(store.digests() == serial_digests(corpus, few_clusters));
 }
 
-TEST_CASE("a job whose node crashes begins anew on another one, where it was interrupted",
-          "[slurm]") {
+TEST_CASE("a killed rank ends its job at once, and submitting again goes on", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    {
+        const JobChain chain(corpus, store.path(), slow_clustering());
+        wait_until([&] { return store.has_checkpoint(); });
+        const std::vector<pid_t> ranks = processes_on(store.path(), "reindex");
+        REQUIRE(std::to_string(ranks.size()) == rank_count);
+        ::kill(ranks.back(), SIGKILL);
+        const CommandResult ended = chain.wait();
+        INFO(ended.output);
+        CHECK(ended.exit_code == killed);
+        CHECK(contains(ended.output, "(reindex) failed: see " + store.name()));
+        CHECK(JobChain::state(chain.publish) == "CANCELLED");
+    }
+    const JobChain again(corpus, store.path(), slow_clustering());
+    again.require_published();
+    CHECK(contains(again.log("reindex-" + again.reindex), "goes on after iteration"));
+    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+}
+
+TEST_CASE("a job whose node crashes begins anew, where it was interrupted", "[slurm]") {
     const auto cluster = SlurmCluster::find();
     if (!cluster) return;
     const TemporaryFolder folder;
@@ -114,7 +137,7 @@ TEST_CASE("a job whose node crashes begins anew on another one, where it was int
     const StoreOnDisk store(folder / "store");
     const JobChain chain(corpus, store.path(), slow_clustering());
     wait_until([&] { return store.has_checkpoint(); });
-    const std::string node = JobChain::node(chain.reindex);
+    const std::string node = SlurmCluster::first_node(JobChain::nodes(chain.reindex));
     cluster->crash(node);
     wait_until([&] { return JobChain::state(chain.reindex) != "COMPLETING"; });
     cluster->mend(node);

@@ -32,6 +32,11 @@ class SlurmCluster {
         return std::nullopt;
     }
 
+    /// Of a list such as "n[1-2]".
+    static std::string first_node(const std::string& nodes) {
+        const std::string names = ask({"scontrol", "show", "hostnames", nodes});
+        return names.substr(0, names.find('\n'));
+    }
     /// Ends a node's daemon and all its processes, as when its power fails.
     void crash(const std::string& node) const {
         mini_slurm({"node-down", folder_, node});
@@ -45,11 +50,24 @@ class SlurmCluster {
   private:
     SlurmCluster() {
         if (folder_.empty()) throw std::runtime_error("KINETOME_TEST_MINI_SLURM is not set");
+        use_environment();
+    }
+    /// From here on Slurm's commands, and those that they start, mean this cluster.
+    void use_environment() const {
+        const std::string variables =
+            ask({"bash", "-c", "eval \"$(\"$0\" env \"$1\")\" && env -0", program, folder_});
+        for (size_t first = 0; first < variables.size();) {
+            const std::string line = variables.c_str() + first;
+            const size_t equals = line.find('=');
+            ::setenv(line.substr(0, equals).c_str(), line.substr(equals + 1).c_str(), 1);
+            first += line.size() + 1;
+        }
     }
     static void mini_slurm(std::vector<std::string> words) {
-        words.insert(words.begin(), KINETOME_SOURCE_DIR "/tests/support/mini-slurm");
+        words.insert(words.begin(), program);
         ask(words);
     }
 
+    inline static const std::string program = KINETOME_SOURCE_DIR "/tests/support/mini-slurm";
     std::string folder_ = variable("KINETOME_TEST_MINI_SLURM");
 };
