@@ -1,6 +1,7 @@
 #include "kinetome/models/pose_clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -9,9 +10,8 @@ namespace kinetome {
 namespace {
 
 std::vector<int64_t> wanted_counts(const PoseClusterOptions& options, int64_t frames) {
+    if (options.clusters != 0) return {options.clusters};
     switch (options.count_rule) {
-        case ClusterCountRule::given:
-            return {options.clusters};
         case ClusterCountRule::ratio: {
             if (!(options.frames_per_cluster > 0))
                 throw std::invalid_argument("the frames per pose cluster must be positive");
@@ -56,6 +56,16 @@ std::vector<int64_t> cluster_counts(const PoseClusterOptions& options, int64_t f
 int64_t cluster_count(const PoseClusterOptions& options, int64_t frames) {
     const std::vector<int64_t> counts = cluster_counts(options, frames);
     return counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
+}
+
+uint64_t fitting_bytes(int64_t rows, int64_t columns, int64_t pieces,
+                       const PoseClusterOptions& options, int threads, int rank_count) {
+    const auto sum_bytes =
+        static_cast<uint64_t>(cluster_count(options, rows) * (columns + 2)) * sizeof(double);
+    const auto waiting = 2 * static_cast<uint64_t>(std::bit_width(static_cast<uint64_t>(pieces)));
+    const uint64_t on_their_way = rank_count > 1 ? 2 * waiting : 0;  // a message and what is in it
+    const auto sums = 2 * static_cast<uint64_t>(threads) + waiting + on_their_way + 4;
+    return start_bytes(rows, columns, options.mixture, rank_count) + sums * sum_bytes;
 }
 
 PoseClusters fit_pose_clusters(const RowSource& rows, const PoseClusterOptions& options,

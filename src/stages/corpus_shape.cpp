@@ -60,11 +60,6 @@ void guess_classes(CorpusShape& corpus, const std::vector<size_t>& unknown) {
     for (const size_t i : unknown) corpus.clips[i].clip_class = static_cast<size_t>(most);
 }
 
-std::vector<int64_t> counts_to_fit(PoseClusterOptions options, int64_t rows) {
-    if (options.clusters > 0) options.count_rule = ClusterCountRule::given;
-    return cluster_counts(options, rows);
-}
-
 }  // namespace
 
 double values_of_frames(const ClassShape& shape) {
@@ -165,7 +160,7 @@ std::vector<PartitionShape> partition_shapes(const CorpusShape& corpus,
              .rows = layout.rows(),
              .pieces = static_cast<int64_t>(layout.pieces.size()),
              .pose_columns = corpus.classes[key.first].pose_columns,
-             .cluster_counts = counts_to_fit(options.pose_clusters, layout.rows())});
+             .cluster_counts = cluster_counts(options.pose_clusters, layout.rows())});
     }
     return partitions;
 }

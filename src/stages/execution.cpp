@@ -62,10 +62,6 @@ std::optional<FinishedWork> make(const RunPlan& plan, const PlannedWork& work,
     const Log& log = execution.log;
     const StageContext context{plan.survey, plan.shards, plan.options,   execution.resources,
                                workspace,   log,         execution.stop, ranks};
-    if (context.is_root()) {
-        log.info("{}: to be made: {}", work.file_name,
-                 workspace.why_missing(work.file_name, work.key));
-    }
     const Meter meter;
     StageResult result = work.stage->make(context, task);
     const Cost cost = ranks ? cost_of_all(meter.cost(), *ranks) : meter.cost();
@@ -102,9 +98,12 @@ std::vector<size_t> work_to_do(const RunPlan& plan, const StageRow& stage,
     for (size_t i = 0; i < plan.work.size(); ++i) {
         const PlannedWork& work = plan.work[i];
         if (work.stage != &stage || !is_selected(plan, work, selection)) continue;
+        if (!finished[i]) to_do.push_back(i);
+        if (!execution.ranks.is_root()) continue;
         if (!finished[i]) {
-            to_do.push_back(i);
-        } else if (execution.ranks.is_root()) {
+            execution.log.info("{}: to be made: {}", work.file_name,
+                               execution.workspace.why_missing(work.file_name, work.key));
+        } else {
             execution.log.info("{}: reused from {}: its key is complete", work.file_name,
                                finished[i]->from_generation
                                    ? "generation " + execution.workspace.last()->id()
@@ -124,6 +123,7 @@ void make_shards(const RunPlan& plan, const std::vector<size_t>& to_do, Finished
     for (size_t i = 0; i < to_do.size(); ++i) {
         if (owners[i] != execution.ranks.rank()) continue;
         execution.stop.check();
+        execution.ranks.check();
         const PlannedWork& work = plan.work[to_do[i]];
         const StageTask task = task_of(plan, work, finished, execution.workspace);
         finished[to_do[i]] = make(plan, work, task, execution, nullptr);
@@ -190,7 +190,6 @@ FinishedPlan find_finished(const RunPlan& plan, const Workspace& workspace,
 
 FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
                        const Execution& execution) {
-    if (execution.ranks.is_root()) require_room(plan, finished, selection, execution.workspace);
     for (const StageRow& stage : stage_table()) {
         const auto to_do = work_to_do(plan, stage, selection, finished, execution);
         if (to_do.empty()) continue;

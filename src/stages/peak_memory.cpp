@@ -1,11 +1,10 @@
 #include "kinetome/stages/peak_memory.h"
 
 #include <algorithm>
-#include <bit>
 #include <vector>
 
 #include "clip_pipeline.h"
-#include "kinetome/math/mixture.h"
+#include "kinetome/models/pose_clusters.h"
 #include "kinetome/stages/stage.h"
 #include "kinetome/stages/work_share.h"
 
@@ -55,20 +54,12 @@ uint64_t result_bytes(const std::string& stage, const PartitionShape& partition)
 /// A partition that is worked on by one rank, or its share at each of several.
 uint64_t partition_bytes(const std::string& stage, const PartitionShape& partition,
                          const ReindexOptions& options, const Resources& resources, int ranks) {
-    const int64_t clusters = partition.most_clusters();
     const auto rows = static_cast<uint64_t>(partition.rows);
+    if (stage == "motion_strings") return rows * sizeof(int32_t) + result_bytes(stage, partition);
     const uint64_t kept =
         rows / static_cast<uint64_t>(ranks) * bytes_of(static_cast<double>(typical_components));
-    if (stage == "motion_strings") {
-        return kept + rows * sizeof(int32_t) + result_bytes(stage, partition);
-    }
-    const auto sum_bytes =
-        static_cast<uint64_t>(clusters * (typical_components + 2)) * sizeof(double);
-    const auto waiting = 2 * std::bit_width(static_cast<uint64_t>(partition.pieces));
-    const auto sums = static_cast<uint64_t>(2 * resources.threads + waiting + 4);
-    const MixtureOptions& mixture = options.pose_clusters.mixture;
-    return kept + start_bytes(partition.rows, typical_components, mixture, ranks) +
-           sums * sum_bytes;
+    return kept + fitting_bytes(partition.rows, typical_components, partition.pieces,
+                                options.pose_clusters, resources.threads, ranks);
 }
 
 }  // namespace

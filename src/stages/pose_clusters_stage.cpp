@@ -2,8 +2,6 @@
 // with a checkpoint after every iteration of EM (S1 §3.2).
 #include <fmt/format.h>
 
-#include <bit>
-
 #include "kinetome/base/piece_sum.h"
 #include "kinetome/run/checkpoint.h"
 #include "kinetome/stages/pose_cluster_file.h"
@@ -49,11 +47,6 @@ Pca principal_components(const StageContext& context, const PosePartition& parti
         context.options.pose_clusters.variance_share);
 }
 
-PoseClusterOptions resolved(PoseClusterOptions options) {
-    if (options.clusters > 0) options.count_rule = ClusterCountRule::given;
-    return options;
-}
-
 /// What rank 0 finds of an earlier run, at every rank.
 std::optional<PoseClusterProgress> earlier_progress(const std::filesystem::path& checkpoint,
                                                     const Workers& workers) {
@@ -68,27 +61,17 @@ std::optional<PoseClusterProgress> earlier_progress(const std::filesystem::path&
     }
 }
 
-/// Memory that fitting takes at a rank beside the rows it keeps: the start's sample, and the sums
-/// of pieces at work or waiting for their sibling.
-uint64_t fitting_bytes(const PosePartition& partition, int64_t columns,
-                       const PoseClusterOptions& options, const Workers& workers) {
-    const int64_t clusters = cluster_count(options, partition.rows());
-    const auto sum_bytes = static_cast<uint64_t>(clusters * (columns + 2)) * sizeof(double);
-    const auto waiting = 2 * std::bit_width(partition.layout.pieces.size());
-    const auto sums = static_cast<uint64_t>(2 * workers.threads + waiting + 4);
-    return start_bytes(partition.rows(), columns, options.mixture, workers.rank_count()) +
-           sums * sum_bytes;
-}
-
 /// Of the memory granted, what is left for keeping rows.
 uint64_t bytes_for_rows(const StageContext& context, const PosePartition& partition,
                         int64_t columns, const PoseClusterOptions& options,
                         const Workers& workers) {
-    constexpr uint64_t reserve = 32
-                                 << 20;  // for readers, logs and what the heap does not give back
+    // For readers, logs, and what the heap does not give back.
+    constexpr uint64_t reserve = 32 << 20;
     const uint64_t granted = context.resources.memory_bytes;
-    const uint64_t needed =
-        resident_bytes() + fitting_bytes(partition, columns, options, workers) + reserve;
+    const uint64_t needed = resident_bytes() + reserve +
+                            fitting_bytes(partition.rows(), columns,
+                                          static_cast<int64_t>(partition.layout.pieces.size()),
+                                          options, workers.threads, workers.rank_count());
     if (needed > granted) {
         throw UsageError(fmt::format(
             "pose_clusters {}: needs {} of memory at each rank, but {} are granted ({}): raise "
@@ -102,7 +85,7 @@ uint64_t bytes_for_rows(const StageContext& context, const PosePartition& partit
 FittedPartition fit(const StageContext& context, const PosePartition& partition,
                     const std::filesystem::path& checkpoint, const Workers& workers) {
     if (partition.rows() < 2) return {};
-    const PoseClusterOptions options = resolved(context.options.pose_clusters);
+    const PoseClusterOptions& options = context.options.pose_clusters;
     FittedPartition fitted;
     fitted.pca = principal_components(context, partition, workers);
     const ProjectedRows rows(
@@ -117,6 +100,7 @@ FittedPartition fit(const StageContext& context, const PosePartition& partition,
         rows, options, workers, context.stop,
         [&](const PoseClusterProgress& progress) {
             if (workers.is_root()) save_checkpoint(checkpoint, packed(progress));
+            context.check_ranks();
         },
         earlier ? &*earlier : nullptr);
     context.log.info(

@@ -169,6 +169,7 @@ RunSummary lead(const ReindexRequest& request, StoreDirectory& store, Communicat
     tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter
     const FinishedPlan before = find_finished(plan, run.workspace());
+    require_room(plan, before, selection_of(request), run.workspace());
     order_work(plan, before, ranks);
     const FinishedPlan after =
         carry_out(plan, before, selection_of(request),
@@ -224,10 +225,11 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
     const RunPlan plan(record.survey, record.options);
     tell(plan, run.log());
     const Selection mine{.stages = {"frames"}, .slice = slice};
+    const FinishedPlan before = find_finished(plan, run.workspace(), mine);
+    require_room(plan, before, mine, run.workspace());
     SerialCommunicator alone;
     const FinishedPlan finished =
-        carry_out(plan, find_finished(plan, run.workspace(), mine), mine,
-                  {run.workspace(), request.resources, run.log(), stop, alone});
+        carry_out(plan, before, mine, {run.workspace(), request.resources, run.log(), stop, alone});
     return sum_up_takes(plan, finished, slice);
 }
 

@@ -51,7 +51,6 @@ TEST_CASE("the number of clusters follows the frames between its bounds, never a
     CHECK(cluster_count(options, 1) == 1);
     CHECK(cluster_count(options, 0) == 0);
 
-    options.count_rule = ClusterCountRule::given;
     options.clusters = 200;
     CHECK(cluster_count(options, 4653) == 200);
     CHECK(cluster_count(options, 150) == 150);
@@ -66,11 +65,11 @@ TEST_CASE("BIC tries each number once, those above the frames as one") {
 
 TEST_CASE("options that name no positive number of clusters are refused") {
     PoseClusterOptions options;
-    options.count_rule = ClusterCountRule::given;
+    options.clusters = -1;
     CHECK_THROWS_AS(cluster_counts(options, 100), std::invalid_argument);
     CHECK_THROWS_AS(cluster_counts(choose_by_bic({}), 100), std::invalid_argument);
     CHECK_THROWS_AS(cluster_counts(choose_by_bic({5, 0}), 100), std::invalid_argument);
-    options.count_rule = ClusterCountRule::ratio;
+    options.clusters = 0;
     options.frames_per_cluster = 0;
     CHECK_THROWS_AS(cluster_counts(options, 100), std::invalid_argument);
 }

@@ -65,7 +65,6 @@ TEST_CASE("exercises of 14_14 at 200 clusters give a string of about 403 letters
     const PoseVectorsOfTakes takes = pose_vectors_of(*corpus, {"14_14"});
     const MatrixF projected = takes.pca.project(takes.rows);
     PoseClusterOptions options;
-    options.count_rule = ClusterCountRule::given;
     options.clusters = 200;
     options.mixture.min_gain = 1e-3;
     const PoseClusters clusters = fit_pose_clusters(MatrixRows(projected), options, 2);

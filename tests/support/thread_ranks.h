@@ -3,6 +3,7 @@
 // test looks at afterwards.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -20,17 +21,21 @@
 /// Where the threads meet, once a call.
 class MeetingPlace {
   public:
-    enum class Call { none, gather_to_all, gather, broadcast, leave, fail };
+    enum class Call { none, gather_to_all, gather, broadcast, pass, check, leave, fail };
     struct Offer {
         Call call = Call::none;
         std::string bytes;
         kinetome::ExitCode code = kinetome::ExitCode::success;  ///< of a failing rank
+        int to = kinetome::Communicator::nobody;                ///< who gets what is passed
     };
     using Offers = std::vector<Offer>;
 
     explicit MeetingPlace(int ranks) : offers_(static_cast<size_t>(ranks)) {}
 
     int ranks() const { return static_cast<int>(offers_.size()); }
+
+    void announce_failure() { failure_announced_ = true; }
+    bool failure_announced() const { return failure_announced_; }
 
     /// Waits until all have come. What each brought.
     std::shared_ptr<const Offers> meet(int rank, Offer offer) {
@@ -49,6 +54,7 @@ class MeetingPlace {
     }
 
   private:
+    std::atomic<bool> failure_announced_{false};
     std::mutex mutex_;
     std::condition_variable all_are_here_;
     int64_t round_ = 0;
@@ -74,7 +80,18 @@ class ThreadCommunicator final : public kinetome::Communicator {
     std::string broadcast(std::string bytes) override {
         return meet(Call::broadcast, std::move(bytes))->front().bytes;
     }
+    std::string pass(int to, std::string bytes) override {
+        const auto offers = meet(Call::pass, std::move(bytes), to);
+        for (const auto& offer : *offers) {
+            if (offer.to == rank_) return offer.bytes;
+        }
+        return {};
+    }
+    void check() override {
+        if (failure_ || place_.failure_announced()) meet(Call::check, {});
+    }
     kinetome::ExitCode fail(kinetome::ExitCode code, const std::string& message) noexcept override {
+        place_.announce_failure();
         if (!failure_) failure_ = failure_in(*place_.meet(rank_, {Call::fail, message, code}));
         return failure_->exit_code();
     }
@@ -87,9 +104,10 @@ class ThreadCommunicator final : public kinetome::Communicator {
     using Call = MeetingPlace::Call;
     using Offers = MeetingPlace::Offers;
 
-    std::shared_ptr<const Offers> meet(Call call, std::string bytes) {
+    std::shared_ptr<const Offers> meet(Call call, std::string bytes, int to = nobody) {
         if (failure_) throw kinetome::RankFailure(*failure_);
-        const auto offers = place_.meet(rank_, {call, std::move(bytes)});
+        const auto offers =
+            place_.meet(rank_, {call, std::move(bytes), kinetome::ExitCode::success, to});
         failure_ = failure_in(*offers);
         if (failure_) throw kinetome::RankFailure(*failure_);
         for (const auto& offer : *offers) {

@@ -31,12 +31,21 @@ class Communicator {
     virtual std::vector<std::string> gather(std::string bytes) = 0;
     /// What rank 0 brought, at every rank; what others brought is ignored.
     virtual std::string broadcast(std::string bytes) = 0;
+    /// What another rank passed to this one, if any did: every rank passes bytes to one other, or
+    /// to `nobody`, and at most one rank to each.
+    virtual std::string pass(int to, std::string bytes) = 0;
+    static constexpr int nobody = -1;
     /// Nobody goes on before all have come here.
     void wait_for_all() { gather_to_all({}); }
 
-    /// Tells the others that this rank ends: their call in progress, or their next one, throws
-    /// RankFailure with that code and message. This rank makes no further call. When several fail
-    /// at once, all hear of the lowest rank among them. Returns the code that was heard.
+    /// Throws RankFailure when another rank has failed. Each rank may ask whenever it likes:
+    /// between pieces of long work of its own, so that it does not go on for nothing.
+    virtual void check() = 0;
+
+    /// Tells the others that this rank ends: their call in progress, or their next one or check(),
+    /// throws RankFailure with that code and message. This rank makes no further call, and waits
+    /// until all have heard. When several fail at once, all hear of the lowest rank among them.
+    /// Returns the code that was heard.
     virtual ExitCode fail(ExitCode code, const std::string& message) noexcept = 0;
 };
 
@@ -50,6 +59,8 @@ class SerialCommunicator final : public Communicator {
     }
     std::vector<std::string> gather(std::string bytes) override { return {std::move(bytes)}; }
     std::string broadcast(std::string bytes) override { return bytes; }
+    std::string pass(int, std::string) override { return {}; }
+    void check() override {}
     ExitCode fail(ExitCode code, const std::string&) noexcept override { return code; }
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -116,6 +117,17 @@ template <class T>
 requires std::is_arithmetic_v<T>
 void unpack(Unpacker& in, std::vector<T>& values) {
     values = in.get_all<T>();
+}
+
+template <class T>
+void pack(Packer& out, const std::optional<T>& value) {
+    out.put<uint8_t>(value.has_value());
+    if (value) pack(out, *value);
+}
+template <class T>
+void unpack(Unpacker& in, std::optional<T>& value) {
+    value.reset();
+    if (in.get<uint8_t>()) unpack(in, value.emplace());
 }
 
 /// One value as a message, and back.

@@ -69,7 +69,7 @@ class PieceTree {
             const auto level = in.get<int32_t>();
             const auto index = in.get<int64_t>();
             std::optional<Sum> sum;
-            if (in.get<uint8_t>()) unpack(in, sum.emplace());
+            unpack(in, sum);
             insert(group, level, index, std::move(sum));
         }
     }
@@ -113,8 +113,8 @@ class PieceTree {
     static void pack_tree(Packer& out, int64_t group, const Tree& tree) {
         for (const auto& [node, sum] : tree.waiting()) {
             out.put<int64_t>(group).template put<int32_t>(node.first);
-            out.template put<int64_t>(node.second).template put<uint8_t>(sum.has_value());
-            if (sum) pack(out, *sum);
+            out.template put<int64_t>(node.second);
+            pack(out, sum);
         }
     }
 
@@ -138,14 +138,18 @@ std::optional<Sum> sum_pieces(const Workers& workers, const PieceLayout& layout,
         const int64_t piece = share.first + i;
         tree.insert_piece(piece, leaf(layout.pieces[static_cast<size_t>(piece)]));
     });
-    if (workers.rank_count() > 1) {
-        std::vector<std::string> messages = workers.ranks->gather_to_all(tree.pack_waiting());
-        for (int rank = 0; rank < workers.rank_count(); ++rank) {
-            if (rank == workers.rank()) continue;
-            tree.insert_waiting(std::move(messages[static_cast<size_t>(rank)]));
-        }
+    if (workers.rank_count() == 1) return tree.take_root();
+
+    // Neighbours join their subtrees, then neighbouring pairs theirs: what joins shrinks to the few
+    // subtrees that wait at the edges, so that no rank ever holds those of all.
+    for (int apart = 1; apart < workers.rank_count(); apart *= 2) {
+        const bool gives = workers.rank() % (2 * apart) == apart;
+        const int to = gives ? workers.rank() - apart : Communicator::nobody;
+        tree.insert_waiting(workers.ranks->pass(to, gives ? tree.pack_waiting() : ""));
     }
-    return tree.take_root();
+    Packer out;
+    if (workers.is_root()) pack(out, tree.take_root());
+    return unpacked<std::optional<Sum>>(workers.ranks->broadcast(out.take()));
 }
 
 }  // namespace kinetome

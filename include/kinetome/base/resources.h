@@ -17,7 +17,7 @@ struct Resources {
     std::string threads_source;  ///< e.g. "affinity", "cgroup", "SLURM_CPUS_PER_TASK", "--threads"
     std::string memory_source;   ///< e.g. "cgroup", "SLURM_MEM_PER_NODE, shared by 4 ranks"
     /// Folder on this machine's own disk where files may be put together; "" none. Never guessed.
-    std::filesystem::path node_scratch;
+    std::filesystem::path node_scratch{};
 };
 
 /// The ranks of a run that share what a node grants, this one among them.

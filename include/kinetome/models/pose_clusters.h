@@ -13,12 +13,12 @@
 
 namespace kinetome {
 
-enum class ClusterCountRule { given, ratio, bic };
+enum class ClusterCountRule { ratio, bic };
 
 struct PoseClusterOptions {
     double variance_share = 0.70;  ///< variance the principal components keep (S1: 70 %)
+    int64_t clusters = 0;          ///< κ; 0: chosen by count_rule
     ClusterCountRule count_rule = ClusterCountRule::ratio;  ///< how κ is chosen
-    int64_t clusters = 0;                                   ///< κ when given
     double frames_per_cluster = 25;                         ///< ratio: κ = n / this …
     int64_t least_clusters = 30;                            ///< … at least this …
     int64_t most_clusters = 8000;                           ///< … at most this
@@ -58,6 +58,12 @@ void pack(Packer& out, const PoseClusters& clusters);
 void unpack(Unpacker& in, PoseClusters& clusters);
 void pack(Packer& out, const PoseClusterProgress& progress);
 void unpack(Unpacker& in, PoseClusterProgress& progress);
+
+/// Memory that fitting n × D rows in so many pieces takes at each rank beside the rows themselves:
+/// the start's sample, and the sums of pieces at work, or waiting for their sibling, or on their
+/// way between ranks.
+uint64_t fitting_bytes(int64_t rows, int64_t columns, int64_t pieces,
+                       const PoseClusterOptions& options, int threads, int rank_count);
 
 /// Fits the mixture to projected pose vectors (n × D) for every κ of cluster_counts and keeps the
 /// one of lowest Bayesian information criterion, ties to the first. `report` is called after every

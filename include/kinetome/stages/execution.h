@@ -48,9 +48,8 @@ struct Execution {
 
 /// Makes the selected work that `finished` (find_finished) lacks: shards are shared out over the
 /// ranks by frames, other stages are made by all together. All ranks call it alike and return the
-/// same. Throws Interrupted between pieces of work, CreateError when the disk has too little room
-/// for what is to be made, and UsageError when selected work needs inputs that are neither finished
-/// nor selected.
+/// same. Throws Interrupted between pieces of work, and UsageError when selected work needs inputs
+/// that are neither finished nor selected.
 FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
                        const Execution& execution);
 

@@ -37,6 +37,10 @@ struct StageContext {
     Workers workers() const { return {resources.threads, ranks}; }
     /// Whether this rank writes the artifact; the others return an empty result.
     bool is_root() const { return workers().is_root(); }
+    /// Throws RankFailure when another rank has failed: for long work of a rank's own.
+    void check_ranks() const {
+        if (ranks) ranks->check();
+    }
 };
 
 /// One artifact to be made.

@@ -35,7 +35,9 @@ std::vector<Result> for_partitions(const Workers& workers,
         if (owners[i] == all_ranks) results[i] = work(i, workers);
     }
     for (size_t i = 0; i < partitions.size(); ++i) {
-        if (owners[i] == workers.rank()) results[i] = work(i, workers.alone());
+        if (owners[i] != workers.rank()) continue;
+        if (workers.ranks) workers.ranks->check();
+        results[i] = work(i, workers.alone());
     }
     if (workers.rank_count() == 1) return results;
 

@@ -14,7 +14,8 @@
 namespace kinetome {
 namespace {
 
-constexpr int no_tag = 0;
+constexpr int message_tag = 0;
+constexpr int failure_tag = 1;  ///< of empty messages: the sender has failed
 
 /// The slowest rank may be long in coming and need this processor: first yields it, then sleeps,
 /// never more than an eighth of the time waited so far.
@@ -79,17 +80,20 @@ MpiCommunicator::~MpiCommunicator() {
 }
 
 MpiCommunicator::Headers MpiCommunicator::exchange(Header mine) const {
-    static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 3 * sizeof(int64_t));
+    constexpr int numbers = 4;
+    static_assert(std::is_trivially_copyable_v<Header> &&
+                  sizeof(Header) == numbers * sizeof(int64_t));
     Headers all(static_cast<size_t>(size_));
     MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Iallgather(&mine, 3, MPI_INT64_T, all.data(), 3, MPI_INT64_T, MPI_COMM_WORLD, &request);
+    MPI_Iallgather(&mine, numbers, MPI_INT64_T, all.data(), numbers, MPI_INT64_T, MPI_COMM_WORLD,
+                   &request);
     wait_for(request);
     return all;
 }
 
-MpiCommunicator::Headers MpiCommunicator::begin(Call call, const std::string& bytes) {
+MpiCommunicator::Headers MpiCommunicator::begin(Call call, const std::string& bytes, int to) {
     if (failure_) throw RankFailure(*failure_);
-    Headers headers = exchange({call, static_cast<int64_t>(bytes.size()), 0});
+    Headers headers = exchange({call, static_cast<int64_t>(bytes.size()), 0, to});
     hear_of_failure(headers, {});
     if (failure_) throw RankFailure(*failure_);
     for (const Header& header : headers) {
@@ -103,6 +107,10 @@ void MpiCommunicator::hear_of_failure(const Headers& headers, const std::string&
         return header.call == Call::fail;
     });
     if (failed == headers.end()) return;
+    for (int r = 0; r < size_; ++r) {  // what they sent for check() to find
+        if (r == rank_ || headers[static_cast<size_t>(r)].call != Call::fail) continue;
+        MPI_Recv(nullptr, 0, MPI_BYTE, r, failure_tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    }
     const auto rank = static_cast<int>(failed - headers.begin());
     std::string message =
         rank == rank_ ? mine : std::string(static_cast<size_t>(failed->length), '\0');
@@ -113,9 +121,15 @@ void MpiCommunicator::hear_of_failure(const Headers& headers, const std::string&
 
 ExitCode MpiCommunicator::fail(ExitCode code, const std::string& message) noexcept {
     if (!failure_) {
+        std::vector<MPI_Request> sent;
+        for (int r = 0; r < size_; ++r) {
+            if (r == rank_) continue;
+            MPI_Isend(nullptr, 0, MPI_BYTE, r, failure_tag, MPI_COMM_WORLD, &sent.emplace_back());
+        }
         hear_of_failure(exchange({Call::fail, static_cast<int64_t>(message.size()),
-                                  static_cast<int64_t>(code)}),
+                                  static_cast<int64_t>(code), nobody}),
                         message);
+        MPI_Waitall(static_cast<int>(sent.size()), sent.data(), MPI_STATUSES_IGNORE);
     }
     return failure_->exit_code();
 }
@@ -167,7 +181,7 @@ std::vector<std::string> MpiCommunicator::gather(std::string bytes) {
         std::vector<std::string> all;
         if (!is_root()) {
             in_parts(bytes, [](char* first, int count) {
-                MPI_Send(first, count, MPI_BYTE, 0, no_tag, MPI_COMM_WORLD);
+                MPI_Send(first, count, MPI_BYTE, 0, message_tag, MPI_COMM_WORLD);
             });
             return all;
         }
@@ -175,7 +189,8 @@ std::vector<std::string> MpiCommunicator::gather(std::string bytes) {
         for (int rank = 1; rank < size_; ++rank) {
             all.emplace_back(static_cast<size_t>(headers[static_cast<size_t>(rank)].length), '\0');
             in_parts(all.back(), [rank](char* first, int count) {
-                MPI_Recv(first, count, MPI_BYTE, rank, no_tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+                MPI_Recv(first, count, MPI_BYTE, rank, message_tag, MPI_COMM_WORLD,
+                         MPI_STATUS_IGNORE);
             });
         }
         return all;
@@ -189,6 +204,36 @@ std::string MpiCommunicator::broadcast(std::string bytes) {
         broadcast_from(0, bytes);
         return std::move(bytes);
     });
+}
+
+std::string MpiCommunicator::pass(int to, std::string bytes) {
+    const Headers headers = begin(Call::pass, bytes, to);
+    return move_or_abort(rank_, [&] {
+        const auto from = std::find_if(headers.begin(), headers.end(),
+                                       [&](const Header& header) { return header.to == rank_; });
+        std::string received;
+        if (from != headers.end()) received.resize(static_cast<size_t>(from->length));
+        std::vector<MPI_Request> moving;
+        in_parts(received, [&](char* first, int count) {
+            MPI_Irecv(first, count, MPI_BYTE, static_cast<int>(from - headers.begin()), message_tag,
+                      MPI_COMM_WORLD, &moving.emplace_back());
+        });
+        if (to == nobody) bytes.clear();
+        in_parts(bytes, [&](char* first, int count) {
+            MPI_Isend(first, count, MPI_BYTE, to, message_tag, MPI_COMM_WORLD,
+                      &moving.emplace_back());
+        });
+        MPI_Waitall(static_cast<int>(moving.size()), moving.data(), MPI_STATUSES_IGNORE);
+        return received;
+    });
+}
+
+void MpiCommunicator::check() {
+    int failed = 0;
+    if (!failure_) {
+        MPI_Iprobe(MPI_ANY_SOURCE, failure_tag, MPI_COMM_WORLD, &failed, MPI_STATUS_IGNORE);
+    }
+    if (failed || failure_) begin(Call::check, {});  // the round in which the failed rank waits
 }
 
 template <class Pass>

@@ -24,22 +24,25 @@ class MpiCommunicator final : public Communicator {
     std::vector<std::string> gather_to_all(std::string bytes) override;
     std::vector<std::string> gather(std::string bytes) override;
     std::string broadcast(std::string bytes) override;
+    std::string pass(int to, std::string bytes) override;
+    void check() override;
     ExitCode fail(ExitCode code, const std::string& message) noexcept override;
 
   private:
-    enum class Call : int64_t { gather_to_all, gather, broadcast, leave, fail };
+    enum class Call : int64_t { gather_to_all, gather, broadcast, pass, check, leave, fail };
     /// What each rank tells at the beginning of a call.
     struct Header {
         Call call;
         int64_t length;  ///< bytes of its message
         int64_t code;    ///< exit code, when it has failed
+        int64_t to;      ///< rank it passes its message to
     };
     using Headers = std::vector<Header>;
 
     /// The headers of all, in rank order.
     Headers exchange(Header mine) const;
     /// The same, when all make this call. Throws RankFailure, or std::logic_error when they do not.
-    Headers begin(Call call, const std::string& bytes);
+    Headers begin(Call call, const std::string& bytes, int to = nobody);
     /// Learns of the lowest rank that failed, if one did; `mine`: the message of this one.
     void hear_of_failure(const Headers& headers, const std::string& mine);
 
