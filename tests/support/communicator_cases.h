@@ -2,10 +2,12 @@
 // Each case is called by all ranks, and throws when a promise is broken.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "kinetome/base/communicator.h"
@@ -82,6 +84,22 @@ inline void calls_in_a_row_do_not_mix(Communicator& ranks) {
     }
 }
 
+inline void messages_are_passed_round_and_to_nobody(Communicator& ranks) {
+    for (const size_t length : {0, 1, 5000}) {
+        const int to = (ranks.rank() + 1) % ranks.size();
+        const int from = (ranks.rank() + ranks.size() - 1) % ranks.size();
+        const std::string round = ranks.pass(to, message_of(ranks.rank(), length));
+        expect(ranks.size() == 1 || round == message_of(from, length), "pass to the next rank");
+        // Rank 0 alone gets something, from the last.
+        const bool gives = ranks.size() > 1 && ranks.rank() == ranks.size() - 1;
+        const std::string received =
+            ranks.pass(gives ? 0 : Communicator::nobody, message_of(ranks.rank(), length));
+        const bool gets = ranks.size() > 1 && ranks.is_root();
+        expect(received == (gets ? message_of(ranks.size() - 1, length) : ""), "pass to rank 0");
+        ranks.check();
+    }
+}
+
 using Case = std::function<void(Communicator&)>;
 
 /// These end well, for any number of ranks.
@@ -89,6 +107,7 @@ inline const std::map<std::string, Case> peaceful = {
     {"messages arrive in rank order", messages_arrive_in_rank_order},
     {"nothing is a message too", nothing_is_a_message_too},
     {"calls in a row do not mix", calls_in_a_row_do_not_mix},
+    {"messages are passed round and to nobody", messages_are_passed_round_and_to_nobody},
 };
 
 constexpr kinetome::ExitCode code_of_failure = kinetome::ExitCode::cannot_create;
@@ -130,6 +149,15 @@ inline const std::map<std::string, Case> failing = {
      last_rank_fails_in([](Communicator& ranks) { ranks.gather("message"); })},
     {"a rank fails while others broadcast",
      last_rank_fails_in([](Communicator& ranks) { ranks.broadcast("message"); })},
+    {"a rank fails while others pass",
+     last_rank_fails_in([](Communicator& ranks) { ranks.pass(Communicator::nobody, ""); })},
+    {"a rank fails while others work on their own", last_rank_fails_in([](Communicator& ranks) {
+         for (int looked = 0; looked < 20'000; ++looked) {
+             ranks.check();
+             std::this_thread::sleep_for(std::chrono::milliseconds(1));
+         }
+         throw std::runtime_error("broken promise: check() hears of a failure");
+     })},
     {"a rank fails when others have finished", last_rank_fails_in([](Communicator&) {})},
     {"later calls fail too", later_calls_fail_too},
 };
