@@ -16,5 +16,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/KinetomeConfigVersion.cma
 install(FILES
   ${PROJECT_BINARY_DIR}/KinetomeConfig.cmake ${PROJECT_BINARY_DIR}/KinetomeConfigVersion.cmake
   cmake/KinetomeDependencies.cmake cmake/FindxxHash.cmake
+  cmake/FindFLANN.cmake
   DESTINATION ${package_dir})
 install(DIRECTORY jobs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kinetome/jobs USE_SOURCE_PERMISSIONS)
