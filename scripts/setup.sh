@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build ccache
   libeigen3-dev libhdf5-dev hdf5-filter-plugin-blosc-serial libtbb-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
-  libflann-dev liblz4-dev
+  libflann-dev liblz4-dev libnanoflann-dev
   libopenmpi-dev openmpi-bin
   catch2 clang-format
 )
