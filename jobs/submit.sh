@@ -12,6 +12,7 @@
 # What follows `--` are options of `kinetome reindex`, such as --preset paper. KINETOME names the program, if it
 # is neither beside this script, nor in its installation or build tree, nor on the PATH.
 set -euo pipefail
+unset "${!SLURM_ARRAY_@}" SLURM_RESTART_COUNT # of a job that this may run in; its jobs would inherit them
 jobs=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 
 die() { # CODE MESSAGE
@@ -63,7 +64,7 @@ done
 
 # --- open the run; what the jobs will need
 declare -A need=()
-plan=$("$kinetome" plan "$corpus" --store "$store" --open --format shell "${options[@]}")
+plan=$("$kinetome" plan "$corpus" --store "$store" --open --format shell ${ranks:+--ranks "$ranks"} "${options[@]}")
 while IFS='=' read -r name value; do
   [[ $name =~ ^[a-z_]+$ && $value =~ ^[0-9:]+$ ]] || die 70 "kinetome plan: unexpected line: $name=$value"
   need[$name]=$value

@@ -6,6 +6,14 @@
 
 namespace kinetome {
 
+bool can_join_ranks() {
+#ifdef KINETOME_WITH_MPI
+    return true;
+#else
+    return false;
+#endif
+}
+
 std::unique_ptr<Communicator> start_ranks([[maybe_unused]] const Launch& launch,
                                           [[maybe_unused]] size_t largest_message) {
 #ifdef KINETOME_WITH_MPI

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kinetome/base/error.h"
+#include "kinetome/run/communicator.h"
 #include "kinetome/stages/peak_memory.h"
 #include "kinetome/stages/stage_loads.h"
 
@@ -193,6 +194,11 @@ class Estimator {
         return longest;
     }
 
+    int ranks_for_a_job() const {
+        if (!can_join_ranks()) return 1;
+        return ranks_that_help(tabulate_ranks([&](int ranks) { return seconds("frames", ranks); }));
+    }
+
     JobEstimate job() const {
         JobEstimate job;
         const auto shards = static_cast<int>(loads_.at("frames").items.size());
@@ -201,8 +207,7 @@ class Estimator {
             tabulate_ranks([&](int tasks) { return slice_seconds(tasks); }, most_tasks));
         job.ingest_seconds = slice_seconds(job.ingest_tasks);
         job.ingest_bytes = peak("frames", 1);
-        job.ranks = request_.ranks.value_or(
-            ranks_that_help(tabulate_ranks([&](int ranks) { return seconds("frames", ranks); })));
+        job.ranks = request_.ranks.value_or(ranks_for_a_job());
         job.seconds = seconds("frames", job.ranks);
         for (const StageRow& stage : stage_table()) {
             if (stage.name != "frames")

@@ -165,6 +165,26 @@ TEST_CASE("warned of its time limit, a job keeps its work and is requeued", "[sl
     CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
 }
 
+TEST_CASE("a job that is cancelled stays cancelled, and submitting again goes on", "[slurm]") {
+    if (!SlurmCluster::find()) return;
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    {
+        const JobChain chain(corpus, store.path(), slow_clustering());
+        wait_until([&] { return store.has_checkpoint(); });
+        ask({"scancel", chain.reindex});
+        const CommandResult ended = chain.wait();
+        CHECK(ended.exit_code == interrupted);
+        CHECK(JobChain::state(chain.reindex) == "CANCELLED");
+        CHECK_FALSE(contains(chain.log("reindex-" + chain.reindex), "requeue"));
+    }
+    const JobChain again(corpus, store.path(), slow_clustering());
+    again.require_published();
+    CHECK(contains(again.log("reindex-" + again.reindex), "goes on after iteration"));
+}
+
 TEST_CASE("a job that is interrupted more often than is allowed fails clearly", "[slurm]") {
     if (!SlurmCluster::find()) return;
     const TemporaryFolder folder;

@@ -9,6 +9,9 @@
 
 namespace kinetome {
 
+/// Whether this is a build with MPI.
+bool can_join_ranks();
+
 /// Joins the processes that were launched with this one, in a build with MPI and when the launcher
 /// offers it; else this process is alone, and MPI is never started. Messages longer than
 /// `largest_message` bytes go in parts; MPI counts bytes in an int.
