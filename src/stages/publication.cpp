@@ -110,6 +110,18 @@ std::string file_text(const std::filesystem::path& path) {
     return std::filesystem::exists(path) ? read_file(path) : std::string();
 }
 
+/// What the run's parts wrote, each in a file of its own: lines of several machines in one would
+/// overwrite each other on a network's file system.
+std::string joined_logs(const std::filesystem::path& run_folder) {
+    std::set<std::filesystem::path> parts;
+    for (const auto& entry : std::filesystem::directory_iterator(run_folder)) {
+        if (entry.path().filename().string().starts_with("log-of-")) parts.insert(entry.path());
+    }
+    std::string text;
+    for (const auto& part : parts) text += read_file(part);
+    return text + file_text(run_folder / "log.txt");
+}
+
 /// Whether the last generation already is what would be published.
 bool is_up_to_date(const Generation* last, const Publication& publication,
                    const FinishedPlan& finished, const std::string& configuration) {
@@ -187,8 +199,7 @@ Publication prepare_publication(const RunPlan& plan, const FinishedPlan& all_fin
 }
 
 Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
-                         Workspace& workspace, bool copy, const std::filesystem::path& log_file,
-                         const Log& log) {
+                         Workspace& workspace, bool copy, const Log& log) {
     Publication publication = prepare_publication(plan, all_finished, workspace.last(), log);
     const FinishedPlan finished = work_of(complete_stages(plan, all_finished), plan, all_finished);
     const std::string configuration = write_configuration(plan.options);
@@ -201,7 +212,7 @@ Publication publish_plan(const RunPlan& plan, const FinishedPlan& all_finished,
     std::map<std::string, std::string> texts = {
         {"catalog.json", write_catalog(publication.catalog)},
         {"config.toml", configuration},
-        {"log.txt", file_text(log_file)}};
+        {"log.txt", joined_logs(workspace.folder())}};
     for (const auto& [name, text] : texts) publication.ledger.texts[name] = digest_of(text);
     texts["ledger.json"] = write_ledger(publication.ledger);
     std::vector<StoreDirectory::File> files;

@@ -94,8 +94,7 @@ std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& bef
 /// Publishes, then forgets the run in progress, unless it holds work of stages that were left out.
 Publication publish_and_forget(RunInProgress& run, const RunPlan& plan,
                                const FinishedPlan& finished, bool copy) {
-    Publication publication =
-        publish_plan(plan, finished, run.workspace(), copy, run.log_file(), run.log());
+    Publication publication = publish_plan(plan, finished, run.workspace(), copy, run.log());
     const bool all_published = std::all_of(finished.begin(), finished.end(),
                                            [](const auto& work) { return work.has_value(); });
     if (all_published) run.workspace().remove();
@@ -219,7 +218,7 @@ IngestSummary ingest(const ReindexRequest& request, const std::optional<Slice>& 
     const std::string name = slice ? fmt::format("slice-{}-of-{}", slice->index, slice->count) : "";
     const StoreLock lock = slice ? store.lock_slice(name) : store.lock_writer();
     const auto opened = find_opened(request, store);
-    RunInProgress run(store, terminal);
+    RunInProgress run(store, terminal, name);
 
     const RunRecord record = opened ? *opened : survey_and_enter(request, run, name, stop);
     const RunPlan plan(record.survey, record.options);

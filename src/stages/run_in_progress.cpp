@@ -50,11 +50,12 @@ void require_agreement(const ReindexRequest& request, RunRecord& record) {
 
 }  // namespace
 
-RunInProgress::RunInProgress(const StoreDirectory& store, const Log& terminal)
+RunInProgress::RunInProgress(const StoreDirectory& store, const Log& terminal,
+                             const std::string& slice)
     : store_(store), log_(terminal) {
     if (const auto id = store_.current()) open_last(*id);
     workspace_.emplace(store_, last(), verified_);
-    log_.add_file(log_file());
+    log_.add_file(workspace_->folder() / (slice.empty() ? "log.txt" : "log-of-" + slice + ".txt"));
 }
 
 /// A damaged generation stays current until the run has made a whole one.

@@ -13,17 +13,16 @@
 
 namespace kinetome {
 
-/// Its log also writes to the run's file.
+/// Its log also writes to a file of the run, of its own when it is a slice of the run.
 class RunInProgress {
   public:
-    RunInProgress(const StoreDirectory& store, const Log& terminal);
+    RunInProgress(const StoreDirectory& store, const Log& terminal, const std::string& slice = "");
     RunInProgress(const RunInProgress&) = delete;
     RunInProgress& operator=(const RunInProgress&) = delete;
 
     const Generation* last() const { return last_ ? &*last_ : nullptr; }
     Workspace& workspace() { return *workspace_; }
     const Log& log() const { return log_; }
-    std::filesystem::path log_file() const { return workspace_->folder() / "log.txt"; }
     std::filesystem::path record_file() const { return workspace_->folder() / "run.json"; }
 
     /// Leaves the record that `publish` and joining parts start from. `slice` is the lock held: ""

@@ -23,8 +23,8 @@ struct Resources {
 /// The ranks of a run that share what a node grants, this one among them.
 struct NodeShare {
     int ranks = 1;  ///< on the node: they share its memory and the quota of processors
-    int same_processors =
-        1;  ///< of those, the ones that may run on the same processors as this one
+    /// Of those, the ones that may run on the same processors as this one.
+    int same_processors = 1;
 };
 
 /// Threads: min(affinity, cgroup, SLURM_CPUS_PER_TASK); bytes: min(cgroup, SLURM_MEM_*), else 80 %

@@ -32,8 +32,8 @@ Catalog make_catalog(const RunPlan& plan, const FinishedPlan& finished, const Ge
 Publication prepare_publication(const RunPlan& plan, const FinishedPlan& finished,
                                 const Generation* last, const Log& log);
 
-/// Prepares and publishes. `log_file` becomes log.txt of the generation.
+/// Prepares and publishes. The logs of the run folder become log.txt of the generation.
 Publication publish_plan(const RunPlan& plan, const FinishedPlan& finished, Workspace& workspace,
-                         bool copy, const std::filesystem::path& log_file, const Log& log);
+                         bool copy, const Log& log);
 
 }  // namespace kinetome

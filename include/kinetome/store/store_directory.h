@@ -6,7 +6,9 @@
 //   STORE/generations/<id>/      files shared with other generations by hard links
 //   STORE/scratch/               work in progress
 //   STORE/locks/                 writer, record, slices/<name>, leases/<generation>.<nonce>,
-//   removal.<id> STORE/labels.csv             the user's own; never touched here
+//   removal.<id>
+//
+//   STORE/labels.csv             the user's own; never touched here
 #pragma once
 
 #include <cstdint>
