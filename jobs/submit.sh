@@ -55,7 +55,11 @@ done
 ((${#paths[@]} == 2)) || die 64 "needs CORPUS and STORE; --help tells more"
 [[ ${nodes:-1} =~ ^[1-9][0-9]*$ && ${ranks:-1} =~ ^[1-9][0-9]*$ && $max_requeues =~ ^[0-9]+$ ]] ||
   die 64 "--nodes, --ranks and --max-requeues are whole numbers"
-corpus=$(realpath -- "${paths[0]}") store=$(realpath -m -- "${paths[1]}")
+for option in "${options[@]}"; do
+  [[ ! $option =~ ^--(only|copy)(=|$) ]] || die 64 "$option is not for a chain of jobs, which makes everything and links"
+done
+corpus=$(realpath -- "${paths[0]}")
+store=$(realpath -m -- "${paths[1]}")
 [[ $store != *\\* ]] || die 64 "Slurm cannot write logs below a folder with a backslash in its name: $store"
 kinetome=$(find_kinetome)
 for program in sbatch squeue scontrol; do

@@ -32,7 +32,7 @@ tell_changes() {
 
 # The program's, 0 when it was killed or cancelled.
 exit_code_of() { # JOB
-  scontrol show job --oneliner "$1" | sed -n 's/.* ExitCode=\([0-9]*\):.*/\1/p' | head -n 1
+  { scontrol show job --oneliner "$1" || true; } | sed -n 's/.* ExitCode=\([0-9]*\):.*/\1/p' | head -n 1
 }
 
 # Ends with the publish job's exit code, if it has one.

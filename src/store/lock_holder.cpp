@@ -128,7 +128,7 @@ std::optional<LockHolder> parse_holder(std::string_view text) {
 bool is_gone(const LockHolder& holder) {
     const LockHolder here = this_process();
     if (is_out_of_sight(holder, here)) {
-        return holder.job && here.job && surely_over(*holder.job, *here.job);
+        return holder.job && surely_over(*holder.job, here.job);
     }
     if (holder.boot != here.boot) return true;
     if (::kill(holder.process, 0) != 0 && errno == ESRCH) return true;

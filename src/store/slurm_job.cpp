@@ -59,6 +59,17 @@ bool lists_as_over(const std::string& text, uint64_t id) {
     return found;
 }
 
+/// "" where Slurm does not answer.
+std::string cluster_of_this_machine() {
+    std::istringstream lines(answer_of("timeout 20 scontrol show config").text);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string name, equals, value;
+        if (words >> name >> equals >> value && name == "ClusterName") return value;
+    }
+    return "";
+}
+
 }  // namespace
 
 std::optional<SlurmJob> this_slurm_job() {
@@ -71,16 +82,16 @@ std::optional<SlurmJob> this_slurm_job() {
                     .user = ::geteuid()};
 }
 
-bool surely_over(const SlurmJob& job, const SlurmJob& here) {
-    if (job.cluster != here.cluster) return false;
-    if (job.id == here.id) return job.restarts < here.restarts;
+bool surely_over(const SlurmJob& job, const std::optional<SlurmJob>& here) {
+    if (job.cluster != (here ? here->cluster : cluster_of_this_machine())) return false;
+    if (here && job.id == here->id) return job.restarts < here->restarts;
     const CommandAnswer squeue =
         answer_of(fmt::format("env -u SLURM_CLUSTERS timeout 20 squeue --noheader --states=all "
                               "--jobs={} --format='%A %T'",
                               job.id));
     if (squeue.success) return lists_as_over(squeue.text, job.id);
     // Forgotten, some minutes after its end. Jobs of other users may just be hidden from this one.
-    return job.user == here.user &&
+    return job.user == ::geteuid() &&
            squeue.text.find("Invalid job id specified") != std::string::npos;
 }
 

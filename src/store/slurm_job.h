@@ -22,9 +22,9 @@ struct SlurmJob {
 /// From the environment; nothing outside of jobs.
 std::optional<SlurmJob> this_slurm_job();
 
-/// Whether a process that belonged to `job` surely ended, as far as a process of job `here` can
-/// tell: `here` is the same job begun anew, or squeue says that the job is over. Never when in
-/// doubt.
-bool surely_over(const SlurmJob& job, const SlurmJob& here);
+/// Whether a process that belonged to `job` surely ended, as far as a process of job `here`
+/// (nothing: of none, where jobs are submitted) can tell: `here` is the same job begun anew, or
+/// squeue says that the job is over. Never when in doubt.
+bool surely_over(const SlurmJob& job, const std::optional<SlurmJob>& here);
 
 }  // namespace kinetome

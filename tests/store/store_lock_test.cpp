@@ -65,6 +65,14 @@ class InsideJob {
         const fs::path program = folder_.write("squeue", "#!/bin/sh\n" + squeue);
         fs::permissions(program, fs::perms::owner_exec, fs::perm_options::add);
     }
+    /// Leaves the job for a machine of a cluster, where jobs are submitted.
+    void leave_job(const std::string& cluster) {
+        const fs::path program = folder_.write(
+            "scontrol",
+            "#!/bin/sh\necho 'BootTime   = now'\necho 'ClusterName   = " + cluster + "'");
+        fs::permissions(program, fs::perms::owner_exec, fs::perm_options::add);
+        outside_.emplace("SLURM_JOB_ID", "");
+    }
     std::string asked() const {
         std::ifstream file(folder_ / "asked");
         std::string line;
@@ -79,6 +87,7 @@ class InsideJob {
     Variable cluster_{"SLURM_CLUSTER_NAME", "alpha"};
     Variable job_{"SLURM_JOB_ID", "12"};
     Variable restarts_{"SLURM_RESTART_COUNT", "2"};
+    std::optional<Variable> outside_;
 };
 
 /// A lock of a process on another machine.
@@ -244,11 +253,27 @@ TEST_CASE("the lock of a job on another machine is left alone while there is any
     nlohmann::json hostile = job(45);
     hostile["job"] = "45; touch /tmp/x";
     left_alone(over, hostile);
-    // Nor from outside of any job.
-    const InsideJob inside(over);
-    const Variable none("SLURM_JOB_ID", "");
-    leave_distant_lock(path, job(45));
-    CHECK(live_holder(path));
+    // Nor where another cluster's jobs are submitted, or none's.
+    for (const std::string cluster : {"beta", ""}) {
+        InsideJob slurm(over);
+        slurm.leave_job(cluster);
+        leave_distant_lock(path, job(45));
+        CHECK(live_holder(path));
+        fs::remove(path);
+    }
+}
+
+TEST_CASE("where jobs are submitted, the lock of a job that is over is given up as well") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "writer";
+    for (const auto& [squeue, over] :
+         {std::pair{"echo 45 FAILED", true}, {"echo 45 RUNNING", false}}) {
+        InsideJob slurm(squeue);
+        slurm.leave_job("alpha");
+        leave_distant_lock(path, job(45));
+        CHECK(live_holder(path).has_value() == !over);
+        fs::remove(path);
+    }
 }
 
 TEST_CASE("on the same machine the process decides, whatever Slurm says of its job") {
