@@ -9,28 +9,29 @@ job=$SLURM_JOB_ID
 
 say() { TZ=UTC printf '%(%FT%TZ)T %s\n' -1 "$*"; }
 
-# run_step NAME COMMAND ...: runs it as the job's ranks, and returns what the first one answered. srun's own exit
-# code does not tell enough: it is 0 also when no rank could be started, as on a node that crashed and came back.
-run_step() {
-  local exit_file=$store/scratch/jobs/$1-$job.exit attempt code
-  shift
-  for attempt in 1 2 3; do
-    code=0
-    rm -f -- "$exit_file"
-    srun --mpi="${KINETOME_SRUN_MPI:-pmix}" --kill-on-bad-exit=1 --cpus-per-task="$SLURM_CPUS_PER_TASK" \
-      "$jobs/rank.sh" "$exit_file" "$@" || code=$?
-    if [[ -s $exit_file ]]; then
-      return "$(<"$exit_file")"
-    fi
-    ((code <= 1)) || return "$code"
-    say "srun has started nothing (attempt $attempt)"
-  done
-  return 70
-}
-
 # Not after it was cancelled or preempted: others have decided then what becomes of it.
 is_running() {
   [[ $(squeue --noheader --jobs="$job" --format=%T) == RUNNING ]]
+}
+
+# run_step NAME COMMAND ...: runs it as the job's ranks, and returns what they answered (rank.sh). srun's own exit
+# code does not tell enough: where a rank cannot be started, as on a node that crashed and came back, it may be 0.
+run_step() {
+  local answer=$store/scratch/jobs/$1-$job.exit attempt code
+  shift
+  for attempt in 1 2 3; do
+    code=0
+    rm -f -- "$answer"
+    srun --mpi="${KINETOME_SRUN_MPI:-pmix}" --kill-on-bad-exit=1 --cpus-per-task="$SLURM_CPUS_PER_TASK" \
+      "$jobs/rank.sh" "$answer" "$@" || code=$?
+    if [[ -s $answer ]]; then
+      return "$(<"$answer")"
+    fi
+    say "srun ended with $code, without an answer of the ranks (attempt $attempt)"
+    is_running || break
+  done
+  ((code > 1)) || code=70
+  return "$code"
 }
 
 # run_stage NAME COMMAND ...: runs a stage, and ends the job as its exit code asks.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # test.sh: install, check the formatting, build, run all tests, and the quick ones under sanitizers.
-# Tests on real motion run when KINETOME_TEST_CORPUS names a folder with cmu/ and labels/.
+# Tests on real motion run when KINETOME_TEST_CORPUS names a folder with cmu/ and labels/; those of the job scripts
+# when KINETOME_TEST_SLURM=1 and KINETOME_TEST_MINI_SLURM names a cluster of tests/support/mini-slurm (.ci/run).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
