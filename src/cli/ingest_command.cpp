@@ -19,7 +19,7 @@ Command ingest_command() {
                              "take part in the run that `kinetome plan --open` opened");
                 return [=](const Invocation& invocation) {
                     request->resources = invocation.resources();
-                    request->resources.node_scratch = *node_scratch;
+                    request->resources.node_scratch = require_node_scratch(*node_scratch);
                     take_options(*flags, *request);
                     std::optional<Slice> part;
                     if (!slice->empty()) part = parse_slice(*slice);

@@ -1,9 +1,13 @@
 #include "options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "kinetome/base/error.h"
+#include "kinetome/base/quote.h"
 #include "kinetome/base/resources.h"
+#include "kinetome/run/node_share.h"
 
 namespace kinetome::cli {
 
@@ -86,13 +90,20 @@ void take_options(const ReindexFlags& flags, ReindexRequest& request) {
     }
 }
 
+std::filesystem::path require_node_scratch(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (folder.empty() || std::filesystem::is_directory(folder, error)) return folder;
+    throw UsageError(
+        fmt::format("--node-scratch {}: no such folder on {}: it must be on every node",
+                    path_for_message(folder.string()), place_of_this_process().node));
+}
+
 std::shared_ptr<std::filesystem::path> add_node_scratch(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     app.add_option(
            "--node-scratch", *folder,
            "folder on this machine's own disk where files are put together, before they are "
            "copied into the store")
-        ->check(CLI::ExistingDirectory)
         ->group("Files");
     return folder;
 }

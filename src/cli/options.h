@@ -56,5 +56,7 @@ void take_options(const ReindexFlags& flags, ReindexRequest& request);
 
 /// --node-scratch; what it points to is set by parsing.
 std::shared_ptr<std::filesystem::path> add_node_scratch(CLI::App& app);
+/// When the command runs, since nodes differ: throws UsageError when the folder is not on this one.
+std::filesystem::path require_node_scratch(const std::filesystem::path& folder);
 
 }  // namespace kinetome::cli

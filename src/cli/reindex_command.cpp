@@ -27,7 +27,7 @@ Command reindex_command() {
             return [=](const Invocation& invocation) {
                 invocation.require_joined();
                 request->resources = invocation.resources();
-                request->resources.node_scratch = *node_scratch;
+                request->resources.node_scratch = require_node_scratch(*node_scratch);
                 take_options(*flags, *request);
                 request->only = {only->begin(), only->end()};
                 request->ranks = &invocation.ranks;

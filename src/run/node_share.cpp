@@ -28,7 +28,7 @@ Place place_of_this_process() {
     ::gethostname(name, sizeof name - 1);
     // Slurm may run several of its nodes on one machine, each with a share of its own.
     const auto slurm_node = environment_of_this_process()("SLURMD_NODENAME");
-    return {std::string(name) + " " + slurm_node.value_or(""), allowed_processors()};
+    return {slurm_node ? std::string(name) + " " + *slurm_node : name, allowed_processors()};
 }
 
 NodeShare node_share(const std::vector<Place>& places, size_t rank) {
