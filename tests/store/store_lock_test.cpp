@@ -251,7 +251,7 @@ TEST_CASE("the lock of a job on another machine is left alone while there is any
     elsewhere["cluster"] = "beta";
     left_alone(over, elsewhere);
     nlohmann::json hostile = job(45);
-    hostile["job"] = "45; touch /tmp/x";
+    hostile["job"] = "45; touch x";
     left_alone(over, hostile);
     // Nor where another cluster's jobs are submitted, or none's.
     for (const std::string cluster : {"beta", ""}) {
