@@ -120,7 +120,7 @@ TEST_CASE("what a killed run has finished costs nothing", "[plan]") {
     CHECK(stage_of(estimate, "features").at("make") > 0);
 }
 
-TEST_CASE("more frames, clusters and iterations cost more; more threads and ranks never do",
+TEST_CASE("more frames, clusters and iterations cost more, more threads and ranks never do",
           "[plan]") {
     const TemporaryFolder folder;
     const fs::path small = folder / "small", large = folder / "large", store = folder / "store";
