@@ -86,6 +86,12 @@ int64_t PartitionShape::most_clusters() const {
     return *std::max_element(cluster_counts.begin(), cluster_counts.end());
 }
 
+int64_t PartitionShape::expected_components() const {
+    // A line through the subjects of the CMU corpus, by the logarithm of their frames.
+    const double components = 1.15 * std::log2(static_cast<double>(std::max<int64_t>(rows, 2))) - 6;
+    return std::clamp<int64_t>(std::llround(components), 1, std::max<int64_t>(pose_columns, 1));
+}
+
 CorpusShape corpus_shape(const Survey& survey, const std::vector<Shard>& shards,
                          const ReindexOptions& options) {
     CorpusShape corpus;

@@ -15,9 +15,7 @@
 namespace kinetome {
 namespace {
 
-/// Principal components and frames a letter of real motion, before either is known. Both files
-/// are small beside the sharded ones.
-constexpr int64_t typical_components = 12;
+/// Of real motion, before it is known; the file is small beside the sharded ones.
 constexpr int64_t typical_frames_per_letter = 15;
 
 /// Bytes of datasets that are there once a class or a partition.
@@ -59,16 +57,18 @@ uint64_t features_bytes(const ClassShape& shape, int64_t clips, int64_t pose_row
         .bytes();
 }
 
-uint64_t mixture_bytes(int64_t clusters) {
-    return static_cast<uint64_t>(clusters * (typical_components + 2) * number);
+uint64_t mixture_bytes(const PartitionShape& partition) {
+    return static_cast<uint64_t>(partition.most_clusters() * (partition.expected_components() + 2) *
+                                 number);
 }
 
 /// write_pose_clusters.
 uint64_t pose_clusters_bytes(const PartitionShape& partition, const MixtureOptions& options) {
     const int64_t clusters = partition.most_clusters();
+    const int64_t components = partition.expected_components();
     return Group()
-        .rows(partition.pose_columns, {number, number, number, typical_components * number})
-        .rows(clusters, {typical_components * number, number, number})
+        .rows(partition.pose_columns, {number, number, number, components * number})
+        .rows(clusters, {components * number, number, number})
         .rows(options.max_iterations, {number})
         .rows(1, {number, number, number})
         .bytes();
@@ -148,7 +148,7 @@ DiskNeed checkpoints(const CorpusShape& corpus, const ReindexOptions& options) {
     DiskNeed need;
     uint64_t largest = 0;
     for (const PartitionShape& partition : partition_shapes(corpus, options)) {
-        const uint64_t bytes = mixture_bytes(partition.most_clusters()) * (keeps_best ? 3 : 1);
+        const uint64_t bytes = mixture_bytes(partition) * (keeps_best ? 3 : 1);
         need.bytes += bytes;
         ++need.inodes;
         largest = std::max(largest, bytes);

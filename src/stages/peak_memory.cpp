@@ -13,7 +13,6 @@ namespace {
 
 constexpr uint64_t program_bytes = 32 << 20;  // code, libraries, what the heap does not give back
 constexpr uint64_t bytes_per_clip = 2048;     // of survey, catalog and ledger
-constexpr int64_t typical_components = 12;
 
 uint64_t bytes_of(double values) {
     return static_cast<uint64_t>(values * sizeof(float));
@@ -48,7 +47,7 @@ uint64_t result_bytes(const std::string& stage, const PartitionShape& partition)
     if (stage == "motion_strings") {
         return static_cast<uint64_t>(clusters * ((clusters + 63) / 64)) * sizeof(uint64_t);
     }
-    return static_cast<uint64_t>(clusters * (typical_components + 2)) * sizeof(double);
+    return static_cast<uint64_t>(clusters * (partition.expected_components() + 2)) * sizeof(double);
 }
 
 /// A partition that is worked on by one rank, or its share at each of several.
@@ -56,9 +55,9 @@ uint64_t partition_bytes(const std::string& stage, const PartitionShape& partiti
                          const ReindexOptions& options, const Resources& resources, int ranks) {
     const auto rows = static_cast<uint64_t>(partition.rows);
     if (stage == "motion_strings") return rows * sizeof(int32_t) + result_bytes(stage, partition);
-    const uint64_t kept =
-        rows / static_cast<uint64_t>(ranks) * bytes_of(static_cast<double>(typical_components));
-    return kept + fitting_bytes(partition.rows, typical_components, partition.pieces,
+    const uint64_t kept = rows / static_cast<uint64_t>(ranks) *
+                          bytes_of(static_cast<double>(partition.expected_components()));
+    return kept + fitting_bytes(partition.rows, partition.expected_components(), partition.pieces,
                                 options.pose_clusters, resources.threads, ranks);
 }
 

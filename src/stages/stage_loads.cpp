@@ -11,10 +11,6 @@ namespace {
 
 constexpr double nanosecond = 1e-9;
 
-/// Sums of an E step and the model they make; components are not known before.
-constexpr double typical_components = 12;
-constexpr double bytes_per_cluster = (typical_components + 2) * sizeof(double);
-
 double fit_seconds(const PartitionShape& partition, const MixtureOptions& options,
                    const PoseRates& rates) {
     const auto rows = static_cast<double>(partition.rows);
@@ -34,6 +30,9 @@ double fit_seconds(const PartitionShape& partition, const MixtureOptions& option
 /// What a rank hands over and gets back: a few subtrees of sums, and the sum of all.
 double fit_exchange(const PartitionShape& partition, const MixtureOptions& options) {
     constexpr double sums_an_iteration = 4;
+    // Sums of an E step and the model they make.
+    const auto bytes_per_cluster =
+        static_cast<double>(partition.expected_components() + 2) * sizeof(double);
     double bytes = 0;
     for (const int64_t clusters : partition.cluster_counts) {
         bytes += static_cast<double>(clusters) * bytes_per_cluster * sums_an_iteration *

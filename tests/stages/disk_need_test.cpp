@@ -63,9 +63,7 @@ void check_bytes(const fs::path& corpus, const fs::path& store, const ReindexOpt
         INFO(plan.work[i].file_name << ": expected " << expected[i] << " bytes, written "
                                     << receipt->file.bytes);
         const auto written = static_cast<double>(receipt->file.bytes);
-        // How many components and letters a partition has is known only when it has been fitted.
-        const double tolerance = plan.work[i].shard ? 0.25 : 0.5;
-        CHECK(static_cast<double>(expected[i]) == Approx(written).epsilon(tolerance));
+        CHECK(static_cast<double>(expected[i]) == Approx(written).epsilon(0.25));
         whole += written;
     }
     for (const auto& entry : fs::recursive_directory_iterator(store)) {
