@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "cost.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/parallel.h"
@@ -42,6 +43,7 @@
 namespace {
 
 using namespace kinetome;
+using namespace kinetome::bench;
 namespace fs = std::filesystem;
 
 struct Options {
@@ -226,24 +228,6 @@ class ProductScan {
     MatrixF rows_;
     VectorF squares_;
 };
-
-struct Cost {
-    double wall = 0;
-    double cpu = 0;
-};
-
-Cost cost_of(const std::function<void()>& work) {
-    const auto started = std::chrono::steady_clock::now();
-    const double cpu_started = cpu_seconds();
-    work();
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
-    return {wall.count(), cpu_seconds() - cpu_started};
-}
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
 
 struct Engine {
     std::string name;

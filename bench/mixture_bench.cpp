@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "cost.h"
 #include "kinetome/base/random.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/math/mixture.h"
@@ -24,6 +25,7 @@
 namespace {
 
 using namespace kinetome;
+using namespace kinetome::bench;
 namespace fs = std::filesystem;
 
 struct Options {
@@ -105,25 +107,6 @@ void write_values(const fs::path& path, const Matrix& values) {
     file.write(reinterpret_cast<const char*>(values.data()),
                static_cast<std::streamsize>(sizeof(typename Matrix::Scalar)) * values.size());
     if (!file) throw std::runtime_error(path.string() + ": cannot be written");
-}
-
-struct Cost {
-    double wall = 0;
-    double cpu = 0;
-};
-
-template <class Work>
-Cost cost_of(Work&& work) {
-    const auto started = std::chrono::steady_clock::now();
-    const double cpu_started = cpu_seconds();
-    work();
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
-    return {wall.count(), cpu_seconds() - cpu_started};
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 /// The rows, their start, and what an iteration does, without the end of a fit.
