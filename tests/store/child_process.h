@@ -83,25 +83,50 @@ void answer(int pipe, const Work& work, ChildEnd end) {
 
 }  // namespace child_process
 
-/// Runs `work`, which returns a text, in a child process and waits for it, a minute at most.
+/// A child process at `work`, which returns a text: a minute at most. Children that work side by
+/// side are begun one after the other by one thread: who forks while another thread holds the lock
+/// of an allocator (a sanitizer's is not mended after a fork) has a child that waits for it for
+/// ever.
+class AnsweringChild {
+  public:
+    template <class Work>
+    explicit AnsweringChild(const Work& work, ChildEnd end = ChildEnd::at_once)
+        : ends_(make_pipe()), process_([&] {
+              ::close(ends_[0]);
+              child_process::answer(ends_[1], work, end);
+          }) {
+        ::close(ends_[1]);
+    }
+    ~AnsweringChild() { ::close(ends_[0]); }
+    AnsweringChild(const AnsweringChild&) = delete;
+    AnsweringChild& operator=(const AnsweringChild&) = delete;
+
+    ChildResult wait() {
+        ChildResult result;
+        std::array<char, 4096> block;
+        for (ssize_t got = 0; (got = ::read(ends_[0], block.data(), block.size())) > 0;) {
+            result.output.append(block.data(), static_cast<size_t>(got));
+        }
+        result.status = process_.wait();
+        return result;
+    }
+
+  private:
+    static std::array<int, 2> make_pipe() {
+        // Else both processes would print what waits to be printed.
+        std::cout.flush();
+        std::fflush(nullptr);
+        std::array<int, 2> ends{};
+        if (::pipe(ends.data()) != 0) throw std::runtime_error("pipe");
+        return ends;
+    }
+
+    std::array<int, 2> ends_;
+    ChildProcess process_;
+};
+
+/// Runs `work` in a child process and waits for it.
 template <class Work>
 ChildResult run_in_child(const Work& work, ChildEnd end = ChildEnd::at_once) {
-    // Else both processes would print what waits to be printed.
-    std::cout.flush();
-    std::fflush(nullptr);
-    std::array<int, 2> ends{};
-    if (::pipe(ends.data()) != 0) throw std::runtime_error("pipe");
-    ChildProcess child([&] {
-        ::close(ends[0]);
-        child_process::answer(ends[1], work, end);
-    });
-    ::close(ends[1]);
-    ChildResult result;
-    std::array<char, 4096> block;
-    for (ssize_t got = 0; (got = ::read(ends[0], block.data(), block.size())) > 0;) {
-        result.output.append(block.data(), static_cast<size_t>(got));
-    }
-    ::close(ends[0]);
-    result.status = child.wait();
-    return result;
+    return AnsweringChild(work, end).wait();
 }

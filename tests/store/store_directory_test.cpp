@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 #include <set>
-#include <thread>
 
 #include "child_process.h"
 #include "kinetome/base/error.h"
@@ -176,12 +175,9 @@ TEST_CASE("writer and slices never work at the same time, however their locks ra
         }
         return "";
     };
-    ChildResult slice;
-    std::thread other([&] { slice = run_in_child(work_on_slice); });
-    const ChildResult writer = run_in_child(write_alone);
-    other.join();
-    CHECK(writer.output == "");
-    CHECK(slice.output == "");
+    AnsweringChild slice(work_on_slice), writer(write_alone);
+    CHECK(writer.wait().output == "");
+    CHECK(slice.wait().output == "");
 }
 
 TEST_CASE("old generations are removed, but never the current or a leased one") {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <list>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -320,13 +321,10 @@ TEST_CASE("of many who find a stale lock at once, one at a time holds it") {
         }
         return taken > 0 ? "" : "never got it";
     };
-    std::vector<std::thread> waiting;
-    std::vector<ChildResult> results(4);
-    for (ChildResult& result : results) {
-        waiting.emplace_back([&] { result = run_in_child(contend); });
-    }
-    for (std::thread& thread : waiting) thread.join();
-    for (const ChildResult& result : results) {
+    std::list<AnsweringChild> children;
+    for (int i = 0; i < 4; ++i) children.emplace_back(contend);
+    for (AnsweringChild& child : children) {
+        const ChildResult result = child.wait();
         CHECK(result.finished_well());
         CHECK(result.output == "");
     }
