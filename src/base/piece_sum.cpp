@@ -4,16 +4,31 @@
 
 namespace kinetome {
 
-RowRange share_of_pieces(const PieceLayout& layout, int rank, int rank_count) {
-    // The first piece whose middle is at or beyond a rank's part of the rows begins its share.
-    const auto begin_of = [&](int64_t part) {
-        const auto& pieces = layout.pieces;
+int64_t runs_per_rank(int64_t pieces, int rank_count) {
+    constexpr int64_t most_runs = 4, least_pieces = 4;
+    return rank_count == 1
+               ? 1
+               : std::clamp<int64_t>(pieces / (rank_count * least_pieces), 1, most_runs);
+}
+
+std::vector<int64_t> share_of_pieces(const PieceLayout& layout, int rank, int rank_count) {
+    const auto& pieces = layout.pieces;
+    const int64_t rounds = runs_per_rank(static_cast<int64_t>(pieces.size()), rank_count);
+    const int64_t runs = rounds * rank_count;
+    // The first piece whose middle is at or beyond a run's part of the rows begins it.
+    const auto begin_of = [&](int64_t run) {
         const auto at = std::partition_point(pieces.begin(), pieces.end(), [&](const RowRange& p) {
-            return (p.first + p.end) * rank_count < 2 * layout.rows() * part;
+            return (p.first + p.end) * runs < 2 * layout.rows() * run;
         });
         return static_cast<int64_t>(at - pieces.begin());
     };
-    return {begin_of(rank), begin_of(rank + 1)};
+    std::vector<int64_t> share;
+    for (int64_t round = 0; round < rounds; ++round) {
+        const int64_t place = round % 2 == 0 ? rank : rank_count - 1 - rank;
+        const int64_t run = round * rank_count + place;
+        for (int64_t p = begin_of(run); p < begin_of(run + 1); ++p) share.push_back(p);
+    }
+    return share;
 }
 
 }  // namespace kinetome

@@ -47,6 +47,29 @@ void assign(const ClusterDensities& densities, const ClusterGroups& groups, cons
     }
 }
 
+/// Each rank brings the letters of its share; all have all of them afterwards.
+void exchange(const PieceLayout& layout, const Workers& workers, std::vector<int32_t>& letters) {
+    const auto share_of = [&](int rank) {
+        return share_of_pieces(layout, rank, workers.rank_count());
+    };
+    std::vector<int32_t> mine;
+    for (const int64_t p : share_of(workers.rank())) {
+        const RowRange& piece = layout.pieces[static_cast<size_t>(p)];
+        mine.insert(mine.end(), letters.begin() + piece.first, letters.begin() + piece.end);
+    }
+    std::vector<std::string> parts = workers.ranks->gather_to_all(packed(mine));
+    for (int rank = 0; rank < workers.rank_count(); ++rank) {
+        const auto theirs =
+            unpacked<std::vector<int32_t>>(std::move(parts[static_cast<size_t>(rank)]));
+        auto next = theirs.begin();
+        for (const int64_t p : share_of(rank)) {
+            const RowRange& piece = layout.pieces[static_cast<size_t>(p)];
+            std::copy_n(next, piece.size(), letters.begin() + piece.first);
+            next += piece.size();
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<int32_t> likeliest_clusters(const Mixture& model, const RowSource& rows,
@@ -55,23 +78,16 @@ std::vector<int32_t> likeliest_clusters(const Mixture& model, const RowSource& r
     const ClusterDensities densities(model, false);
     const ClusterGroups groups(densities);
     const auto& pieces = rows.layout().pieces;
-    const RowRange share = share_of_pieces(rows.layout(), workers.rank(), workers.rank_count());
-    const int64_t first_row = share.size() ? pieces[size_t(share.first)].first : 0;
-    const int64_t end_row = share.size() ? pieces[size_t(share.end - 1)].end : 0;
-    std::vector<int32_t> mine(static_cast<size_t>(end_row - first_row));
-    parallel_for(workers.threads, share.size(), [&](int64_t i) {
-        const RowRange& piece = pieces[static_cast<size_t>(share.first + i)];
+    const std::vector<int64_t> share =
+        share_of_pieces(rows.layout(), workers.rank(), workers.rank_count());
+    std::vector<int32_t> letters(static_cast<size_t>(rows.rows()));
+    parallel_for(workers.threads, static_cast<int64_t>(share.size()), [&](int64_t i) {
+        const RowRange& piece = pieces[static_cast<size_t>(share[static_cast<size_t>(i)])];
         assign(densities, groups, rows.read(piece).view(), piece.first,
-               mine.data() + (piece.first - first_row));
+               letters.data() + piece.first);
     });
-    if (workers.rank_count() == 1) return mine;
-
-    std::vector<int32_t> all;
-    for (std::string& part : workers.ranks->gather_to_all(packed(mine))) {
-        const auto letters = unpacked<std::vector<int32_t>>(std::move(part));
-        all.insert(all.end(), letters.begin(), letters.end());
-    }
-    return all;
+    if (workers.rank_count() > 1) exchange(rows.layout(), workers, letters);
+    return letters;
 }
 
 }  // namespace kinetome

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kinetome/base/piece_sum.h"
+
 namespace kinetome {
 
 namespace {
@@ -62,7 +64,10 @@ uint64_t fitting_bytes(int64_t rows, int64_t columns, int64_t pieces,
                        const PoseClusterOptions& options, int threads, int rank_count) {
     const auto sum_bytes =
         static_cast<uint64_t>(cluster_count(options, rows) * (columns + 2)) * sizeof(double);
-    const auto waiting = 2 * static_cast<uint64_t>(std::bit_width(static_cast<uint64_t>(pieces)));
+    const int64_t runs = runs_per_rank(pieces, rank_count);
+    const auto run_pieces = static_cast<uint64_t>(pieces / (runs * rank_count) + 1);
+    const auto waiting =
+        static_cast<uint64_t>(runs) * 2 * static_cast<uint64_t>(std::bit_width(run_pieces));
     const uint64_t on_their_way = rank_count > 1 ? 2 * waiting : 0;  // a message and what is in it
     const auto sums = 2 * static_cast<uint64_t>(threads) + waiting + on_their_way + 4;
     return start_bytes(rows, columns, options.mixture, rank_count) + sums * sum_bytes;

@@ -8,20 +8,16 @@ namespace kinetome {
 
 ProjectedRows::ProjectedRows(const PosePartition& partition, const Pca& pca, const Workers& workers,
                              uint64_t kept_bytes, StopToken stop)
-    : partition_(partition), pca_(pca), stop_(stop) {
-    const auto& pieces = partition.layout.pieces;
-    const RowRange share = share_of_pieces(partition.layout, workers.rank(), workers.rank_count());
-    if (share.size() == 0) return;
-    const auto row_bytes = static_cast<uint64_t>(pca.dimension()) * sizeof(float);
+    : partition_(partition), pca_(pca), stop_(stop), kept_(partition.layout.pieces.size()) {
+    const auto row_bytes = static_cast<uint64_t>(pca_.dimension()) * sizeof(float);
     const auto most_rows = static_cast<int64_t>(kept_bytes / std::max<uint64_t>(row_bytes, 1));
-    first_piece_ = share.first;
-    kept_first_ = kept_end_ = pieces[static_cast<size_t>(share.first)].first;
-    int64_t end_piece = share.first;
-    while (end_piece < share.end &&
-           pieces[static_cast<size_t>(end_piece)].end - kept_first_ <= most_rows) {
-        kept_end_ = pieces[static_cast<size_t>(end_piece++)].end;
+    for (const int64_t p :
+         share_of_pieces(partition.layout, workers.rank(), workers.rank_count())) {
+        const int64_t rows = partition.layout.pieces[static_cast<size_t>(p)].size();
+        if (kept_rows_ + rows > most_rows) break;
+        kept_[static_cast<size_t>(p)].keep = true;
+        kept_rows_ += rows;
     }
-    kept_ = std::vector<KeptPiece>(static_cast<size_t>(end_piece - share.first));
 }
 
 MatrixF ProjectedRows::project(const RowRange& range) const {
@@ -30,7 +26,7 @@ MatrixF ProjectedRows::project(const RowRange& range) const {
 }
 
 std::shared_ptr<const MatrixF> ProjectedRows::kept(int64_t piece) const {
-    KeptPiece& place = kept_[static_cast<size_t>(piece - first_piece_)];
+    KeptPiece& place = kept_[static_cast<size_t>(piece)];
     std::call_once(place.once, [&] {
         place.rows = std::make_shared<const MatrixF>(
             project(partition_.layout.pieces[static_cast<size_t>(piece)]));
@@ -44,8 +40,10 @@ RowBlock ProjectedRows::read(const RowRange& range) const {
         std::upper_bound(pieces.begin(), pieces.end(), range.first,
                          [](int64_t row, const RowRange& piece) { return row < piece.first; });
     const int64_t piece = after - pieces.begin() - 1;
-    const bool inside_kept = range.first >= kept_first_ && range.end <= kept_end_;
-    if (!inside_kept) return RowBlock(project(range));
+    for (auto p = static_cast<size_t>(piece); p < pieces.size() && pieces[p].first < range.end;
+         ++p) {
+        if (!kept_[p].keep) return RowBlock(project(range));
+    }
 
     const RowRange& whole = pieces[static_cast<size_t>(piece)];
     if (range.end <= whole.end) {

@@ -90,29 +90,53 @@ TEST_CASE("an exception in a piece leaves the sum") {
     }
 }
 
-TEST_CASE("every piece is in exactly one rank's share, and shares follow each other") {
+TEST_CASE("every piece is in exactly one rank's share, in order") {
     for (const PieceLayout& layout :
          {layout_pieces(some_clips()), layout_rows(0), layout_rows(5)}) {
         for (const int ranks : {1, 2, 3, 7, 100}) {
-            int64_t next = 0;
+            std::vector<int> owners(layout.pieces.size(), 0);
             for (int rank = 0; rank < ranks; ++rank) {
-                const RowRange share = share_of_pieces(layout, rank, ranks);
-                REQUIRE(share.first == next);
-                REQUIRE(share.end >= share.first);
-                next = share.end;
+                const auto share = share_of_pieces(layout, rank, ranks);
+                CHECK(std::is_sorted(share.begin(), share.end()));
+                for (const int64_t piece : share) ++owners.at(size_t(piece));
             }
-            CHECK(next == int64_t(layout.pieces.size()));
+            CHECK(owners == std::vector<int>(owners.size(), 1));
         }
     }
 }
 
-TEST_CASE("shares differ by less than two pieces of rows") {
+TEST_CASE("shares differ by less than two pieces of rows a run") {
     const PieceLayout layout = layout_pieces(some_clips());
     for (int rank = 0; rank < 4; ++rank) {
-        const RowRange share = share_of_pieces(layout, rank, 4);
-        const int64_t rows =
-            layout.pieces[size_t(share.end - 1)].end - layout.pieces[size_t(share.first)].first;
+        int64_t rows = 0;
+        for (const int64_t piece : share_of_pieces(layout, rank, 4)) {
+            rows += layout.pieces[size_t(piece)].size();
+        }
         CHECK(std::abs(rows - layout.rows() / 4) < 4 * piece_frames);
+    }
+}
+
+TEST_CASE("rows that make more and more work along the corpus are shared out evenly") {
+    const PieceLayout layout = layout_rows(400 * piece_frames);
+    for (const int ranks : {2, 3, 5}) {
+        double whole = 0;
+        std::vector<double> work(static_cast<size_t>(ranks));
+        for (int rank = 0; rank < ranks; ++rank) {
+            for (const int64_t piece : share_of_pieces(layout, rank, ranks)) {
+                work[size_t(rank)] += double(piece);
+                whole += double(piece);
+            }
+        }
+        for (const double of_rank : work) CHECK(of_rank == Approx(whole / ranks).epsilon(0.02));
+    }
+}
+
+TEST_CASE("few pieces are still one for each rank") {
+    for (const int ranks : {2, 3, 7}) {
+        const PieceLayout layout = layout_rows(ranks * piece_frames);
+        for (int rank = 0; rank < ranks; ++rank) {
+            CHECK(share_of_pieces(layout, rank, ranks) == std::vector<int64_t>{rank});
+        }
     }
 }
 

@@ -18,9 +18,14 @@
 
 namespace kinetome {
 
-/// The pieces [first, end) that a rank works on: consecutive ones, shared out by rows. Every piece
-/// is in exactly one share; a rank may have none.
-RowRange share_of_pieces(const PieceLayout& layout, int rank, int rank_count);
+/// Runs of consecutive pieces that a rank works on. The work a row makes changes slowly along a
+/// corpus (takes of one subject lie together), so several runs a rank, from all over the corpus,
+/// even it out; each run more makes more subtrees wait for siblings at other ranks.
+int64_t runs_per_rank(int64_t pieces, int rank_count);
+
+/// The pieces that a rank works on, in their order: runs of about equally many rows, dealt out to
+/// the ranks back and forth. Every piece is in exactly one share; a rank may have none.
+std::vector<int64_t> share_of_pieces(const PieceLayout& layout, int rank, int rank_count);
 
 /// Pieces in a fixed tree inside their group, groups in a fixed tree above. Empty groups take no
 /// part in the arithmetic but keep their place.
@@ -133,15 +138,16 @@ std::optional<Sum> sum_pieces(const Workers& workers, const PieceLayout& layout,
                               Merge merge) {
     PieceTree<Sum, Merge> tree(layout, merge);
     if (workers.is_root()) tree.insert_empty_groups();
-    const RowRange share = share_of_pieces(layout, workers.rank(), workers.rank_count());
-    parallel_for(workers.threads, share.size(), [&](int64_t i) {
-        const int64_t piece = share.first + i;
+    const std::vector<int64_t> share =
+        share_of_pieces(layout, workers.rank(), workers.rank_count());
+    parallel_for(workers.threads, static_cast<int64_t>(share.size()), [&](int64_t i) {
+        const int64_t piece = share[static_cast<size_t>(i)];
         tree.insert_piece(piece, leaf(layout.pieces[static_cast<size_t>(piece)]));
     });
     if (workers.rank_count() == 1) return tree.take_root();
 
     // Neighbours join their subtrees, then neighbouring pairs theirs: what joins shrinks to the few
-    // subtrees that wait at the edges, so that no rank ever holds those of all.
+    // subtrees that wait at the edges of runs, so that no rank ever holds those of all.
     for (int apart = 1; apart < workers.rank_count(); apart *= 2) {
         const bool gives = workers.rank() % (2 * apart) == apart;
         const int to = gives ? workers.rank() - apart : Communicator::nobody;

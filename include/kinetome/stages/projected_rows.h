@@ -27,10 +27,11 @@ class ProjectedRows final : public RowSource {
     RowBlock read(const RowRange& range) const override;
 
     /// Rows that stay in memory once read.
-    int64_t kept_rows() const { return kept_end_ - kept_first_; }
+    int64_t kept_rows() const { return kept_rows_; }
 
   private:
     struct KeptPiece {
+        bool keep = false;
         std::once_flag once;
         std::shared_ptr<const MatrixF> rows;
     };
@@ -41,9 +42,8 @@ class ProjectedRows final : public RowSource {
     const PosePartition& partition_;
     const Pca& pca_;
     StopToken stop_;
-    int64_t first_piece_ = 0;                ///< of those that are kept
-    int64_t kept_first_ = 0, kept_end_ = 0;  ///< rows
-    mutable std::vector<KeptPiece> kept_;
+    int64_t kept_rows_ = 0;
+    mutable std::vector<KeptPiece> kept_;  ///< one for each piece of the layout
 };
 
 }  // namespace kinetome
