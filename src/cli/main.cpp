@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "kinetome/base/allocation.h"
 #include "kinetome/base/architecture.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/run/communicator.h"
@@ -104,6 +105,7 @@ ExitCode run_main(int argc, char** argv, const Launch& launch, StopToken stop,
 int start(int argc, char** argv) {
     try {
         require_build_architecture();
+        keep_freed_memory();
         const StopToken stop = watch_signals();
         const Launch launch = launch_of(environment_of_this_process());
         const auto ranks = start_ranks(launch);
