@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "kinetome/formats/annotation.h"
 #include "kinetome/formats/clip.h"
-#include "kinetome/synthesis/annotation.h"
 #include "kinetome/synthesis/corpus_generator.h"
 
 namespace kinetome {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "kinetome/base/stop.h"
-#include "kinetome/synthesis/annotation.h"
+#include "kinetome/formats/annotation.h"
 #include "kinetome/synthesis/take_plan.h"
 
 namespace kinetome {

@@ -13,6 +13,7 @@ struct CycleRow {
     std::string clip;
     int64_t first = 0, end = 0;
     std::string label;
+    int64_t line = 0;  ///< of the file it was read from; 0: of none
 };
 
 /// The boundary at `end` is uncertain in [end_lo, end_hi): there the motion passes from one
@@ -22,6 +23,7 @@ struct TruthRow {
     int64_t first = 0, end = 0;
     std::string label;
     int64_t end_lo = 0, end_hi = 0;
+    int64_t line = 0;  ///< of the file it was read from; 0: of none
 };
 
 struct Annotations {
@@ -35,7 +37,7 @@ struct Annotations {
 std::string write_truth_csv(const std::vector<TruthRow>& rows);
 std::string write_cycles_csv(const std::vector<CycleRow>& rows);
 
-/// Throw InputError ("path:line: ...").
+/// Every row names its line. Throw InputError ("path:line: ...").
 std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& path);
 std::vector<CycleRow> parse_cycles_csv(std::string_view text, const std::string& path);
 

@@ -1,4 +1,4 @@
-#include "kinetome/synthesis/annotation.h"
+#include "kinetome/formats/annotation.h"
 
 #include <charconv>
 
@@ -76,7 +76,8 @@ std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& 
                         .end = frame_field(record, 2, path),
                         .label = from_csv_text(record.fields[3]),
                         .end_lo = frame_field(record, 4, path),
-                        .end_hi = frame_field(record, 5, path)});
+                        .end_hi = frame_field(record, 5, path),
+                        .line = record.line});
     return rows;
 }
 
@@ -86,7 +87,8 @@ std::vector<CycleRow> parse_cycles_csv(std::string_view text, const std::string&
         rows.push_back({.clip = from_csv_text(record.fields[0]),
                         .first = frame_field(record, 1, path),
                         .end = frame_field(record, 2, path),
-                        .label = from_csv_text(record.fields[3])});
+                        .label = from_csv_text(record.fields[3]),
+                        .line = record.line});
     return rows;
 }
 

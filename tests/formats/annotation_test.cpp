@@ -1,4 +1,4 @@
-#include "kinetome/synthesis/annotation.h"
+#include "kinetome/formats/annotation.h"
 
 #include <catch2/catch.hpp>
 
@@ -18,6 +18,7 @@ TEST_CASE("annotations come back from their files") {
         CHECK(read[i].label == truth[i].label);
         CHECK(read[i].end_lo == truth[i].end_lo);
         CHECK(read[i].end_hi == truth[i].end_hi);
+        CHECK(read[i].line == static_cast<int64_t>(i) + 2);
     }
     CHECK(write_truth_csv({}) == "clip,first,end,label,end_lo,end_hi\n");
     CHECK(write_cycles_csv({{"a", 1, 2, "b"}}) == "clip,first,end,label\na,1,2,b\n");
