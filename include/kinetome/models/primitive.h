@@ -1,0 +1,53 @@
+// Motion primitives (S3 §3.2): the single executions of the movement that an activity repeats.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kinetome/base/matrix.h"
+#include "kinetome/models/neighbor_graph.h"
+#include "kinetome/models/segment.h"
+
+namespace kinetome {
+
+enum class PrimitiveMethod {
+    cost_ridges,    ///< repetitions of the frame that repeats most clearly; palindromes do no harm
+    warping_paths,  ///< S3 as written: one path through each component of the activity's graph
+};
+
+/// Times are seconds, distances those of the features (cm).
+struct CostRidgeOptions {
+    double radius = 72;            ///< a repetition is nearer than this, on the mean along its path
+    double path_side = 8.0 / 30;   ///< that a path extends to either side of the pair it is for
+    double relative_ridge = 0.35;  ///< between two repetitions the cost rises above either by this
+                                   ///< share of its top …
+    double least_ridge = 1.5;      ///< … and by so much
+    double longest_gap = 1.6;      ///< periods; a longer stretch is searched again by itself
+    double least_piece = 0.4;      ///< periods; what is left at the end, if shorter, joins the last
+};
+
+/// Times are seconds, distances those of the features (cm).
+struct WarpingPathOptions {
+    double radius = 64;   ///< longer edges do not count
+    double steepest = 2;  ///< mean slope of a path, or its reciprocal, at most
+    double least_symmetry =
+        0.5;  ///< share of a path's cells that are in the graph mirrored as well
+};
+
+struct PrimitiveOptions {
+    PrimitiveMethod method = PrimitiveMethod::cost_ridges;
+    double rate = 30;            ///< of the features, frames a second
+    double shortest = 5.0 / 30;  ///< of a primitive and of a path
+    CostRidgeOptions cost_ridges;
+    WarpingPathOptions warping_paths;
+};
+
+/// The primitives of each activity, in order, without gaps inside it: an activity in which nothing
+/// recurs is one primitive. Transitions have none. `features` are the n × d rows of the take,
+/// `graph` is their neighbourhood graph, `segments` its activities (find_activities). Throws
+/// std::invalid_argument when these do not fit together, or the rate is not positive.
+std::vector<Primitive> find_primitives(const MatrixFView& features, const NeighborGraph& graph,
+                                       std::span<const Segment> segments,
+                                       const PrimitiveOptions& options = {});
+
+}  // namespace kinetome
