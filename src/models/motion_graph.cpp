@@ -1,0 +1,110 @@
+#include "kinetome/models/motion_graph.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <tuple>
+
+namespace kinetome {
+namespace {
+
+void check_nodes(const std::vector<MotionPiece>& pieces, const std::vector<int32_t>& node_of,
+                 int32_t nodes) {
+    if (node_of.size() != pieces.size()) {
+        throw std::invalid_argument("each piece of a motion graph needs a node");
+    }
+    if (std::ranges::any_of(node_of, [=](int32_t node) { return node < 0 || node >= nodes; })) {
+        throw std::invalid_argument("a piece of a motion graph names a node that is not there");
+    }
+}
+
+/// Pairs of consecutive pieces of a clip, in the order of their clips.
+std::vector<Succession> find_successions(const std::vector<MotionPiece>& pieces,
+                                         int64_t longest_gap) {
+    std::vector<int32_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto place = [&](int32_t i) {
+        const MotionPiece& piece = pieces[static_cast<size_t>(i)];
+        return std::tuple(piece.clip, piece.first, i);
+    };
+    std::ranges::sort(order, {}, place);
+    std::vector<Succession> found;
+    for (size_t i = 0; i + 1 < order.size(); ++i) {
+        const MotionPiece& piece = pieces[static_cast<size_t>(order[i])];
+        const MotionPiece& next = pieces[static_cast<size_t>(order[i + 1])];
+        if (piece.clip != next.clip) continue;
+        if (next.first < piece.end) {
+            throw std::invalid_argument("pieces of a motion graph overlap in their clip");
+        }
+        if (next.first - piece.end <= longest_gap) found.push_back({order[i], order[i + 1]});
+    }
+    return found;
+}
+
+template <class T>
+std::span<const T> part(const std::vector<T>& all, const std::vector<int64_t>& offsets, size_t i) {
+    return std::span(all).subspan(static_cast<size_t>(offsets[i]),
+                                  static_cast<size_t>(offsets[i + 1] - offsets[i]));
+}
+
+}  // namespace
+
+MotionGraph::MotionGraph(std::vector<MotionPiece> pieces, std::vector<int32_t> node_of,
+                         int32_t nodes, int64_t longest_gap)
+    : pieces_(std::move(pieces)), node_of_(std::move(node_of)) {
+    check_nodes(pieces_, node_of_, nodes);
+
+    members_.resize(pieces_.size());
+    std::iota(members_.begin(), members_.end(), 0);
+    std::ranges::stable_sort(members_, {}, [&](int32_t piece) { return this->node_of(piece); });
+
+    successions_ = find_successions(pieces_, longest_gap);
+    const auto ends = [&](const Succession& one) {
+        return std::tuple(this->node_of(one.piece), this->node_of(one.next), one.piece);
+    };
+    std::ranges::sort(successions_, {}, ends);
+
+    size_t member = 0, succession = 0;
+    for (int32_t node = 0; node < nodes; ++node) {
+        while (member < members_.size() && this->node_of(members_[member]) == node) ++member;
+        members_of_.push_back(static_cast<int64_t>(member));
+        while (succession < successions_.size() &&
+               this->node_of(successions_[succession].piece) == node) {
+            const int32_t target = this->node_of(successions_[succession].next);
+            const bool new_edge = edges() == edges_of_.back() || targets_.back() != target;
+            if (new_edge) {
+                targets_.push_back(target);
+                successions_of_edge_.push_back(successions_of_edge_.back());
+            }
+            successions_of_edge_.back() = static_cast<int64_t>(++succession);
+        }
+        edges_of_.push_back(edges());
+    }
+}
+
+std::span<const int32_t> MotionGraph::members(int32_t node) const {
+    return part(members_, members_of_, static_cast<size_t>(node));
+}
+
+std::span<const int32_t> MotionGraph::targets(int32_t node) const {
+    return part(targets_, edges_of_, static_cast<size_t>(node));
+}
+
+std::span<const Succession> MotionGraph::successions(int32_t node, int64_t edge) const {
+    const int64_t number = edges_of_[static_cast<size_t>(node)] + edge;
+    return part(successions_, successions_of_edge_, static_cast<size_t>(number));
+}
+
+std::span<const Succession> MotionGraph::successions(int32_t node) const {
+    const auto first = static_cast<size_t>(edges_of_[static_cast<size_t>(node)]);
+    const auto end = static_cast<size_t>(edges_of_[static_cast<size_t>(node) + 1]);
+    return std::span(successions_)
+        .subspan(static_cast<size_t>(successions_of_edge_[first]),
+                 static_cast<size_t>(successions_of_edge_[end] - successions_of_edge_[first]));
+}
+
+int64_t MotionGraph::gap(const Succession& succession) const {
+    return piece(succession.next).first - piece(succession.piece).end;
+}
+
+}  // namespace kinetome
