@@ -11,10 +11,8 @@ namespace kinetome {
 /// The clip at `rate` frames a second; its first frame is the clip's first, nothing is
 /// extrapolated. Rows that fall on a source frame are that frame, bit for bit: so are all rows at
 /// an equal rate or at one that divides it (120 → 30 picks every fourth). Between two frames
-/// translations are linear and a joint with three rotations turns by slerp, its angles on the
-/// branch of the nearer frame. A joint with one or two rotations has its angles interpolated, the
-/// shorter way round: a slerp would leave the turns that its channels can say. Throws
-/// std::invalid_argument unless the rate is positive and finite.
+/// it is as PoseInterpolation (pose_interpolation.h) has it. Throws std::invalid_argument unless
+/// the rate is positive and finite.
 Clip resample(const Clip& clip, double rate);
 
 /// The clip at any moments: row i is the clip at source_frames[i], between two frames as resample
