@@ -1,6 +1,7 @@
 #include "kinetome/base/piece_sum.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kinetome {
 
@@ -29,6 +30,34 @@ std::vector<int64_t> share_of_pieces(const PieceLayout& layout, int rank, int ra
         for (int64_t p = begin_of(run); p < begin_of(run + 1); ++p) share.push_back(p);
     }
     return share;
+}
+
+SharedPieces::SharedPieces(const PieceLayout& layout, const Workers& workers) {
+    const auto lists = workers.ranks ? workers.ranks->work_lists() : std::vector<WorkList*>();
+    for (int rank = 0; rank < workers.rank_count(); ++rank) {
+        const bool is_own = rank == workers.rank();
+        WorkList* const list = lists.empty() ? nullptr : lists[static_cast<size_t>(rank)];
+        if (!list && !is_own) continue;
+        Share share{list ? list : &unshared_, share_of_pieces(layout, rank, workers.rank_count())};
+        most_ += static_cast<int64_t>(share.pieces.size());
+        if (is_own) {
+            own_ = std::move(share);
+        } else {
+            others_.push_back(std::move(share));
+        }
+    }
+    own_.left->refill(static_cast<int64_t>(own_.pieces.size()));
+}
+
+std::optional<int64_t> SharedPieces::take() {
+    if (const auto item = own_.left->take_front()) return own_.piece(*item);
+    for (;;) {
+        const auto most_left = std::max_element(
+            others_.begin(), others_.end(),
+            [](const Share& a, const Share& b) { return a.left->left() < b.left->left(); });
+        if (most_left == others_.end() || most_left->left->left() <= 0) return std::nullopt;
+        if (const auto item = most_left->left->take_back()) return most_left->piece(*item);
+    }
 }
 
 }  // namespace kinetome

@@ -1,6 +1,7 @@
 #include "kinetome/base/piece_sum.h"
 
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <numeric>
@@ -155,6 +156,51 @@ TEST_CASE("sums over pieces have the same bits for any number of ranks, at every
         });
         for (const auto& sum : sums) CHECK(sum == expected);
     }
+}
+
+TEST_CASE("pieces of a rank that is held up are summed by the others on its machine") {
+    const PieceLayout layout = layout_rows(40 * piece_frames);
+    std::atomic<int> summed{0};
+    std::atomic<bool> others_helped{false};
+    std::vector<std::optional<double>> sums(3);
+    run_as_ranks(3, [&](Communicator& ranks) {
+        const auto leaf = [&](const RowRange& rows) {
+            // Without help, what is left of rank 0's share would wait for rank 0 for ever.
+            for (int pause = 0; ranks.rank() == 0 && summed < 39 && pause < 20'000; ++pause) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+            if (ranks.rank() == 0 && summed == 39) others_helped = true;
+            ++summed;
+            return double(rows.size());
+        };
+        sums[size_t(ranks.rank())] = sum_pieces<double>(Workers(1, &ranks), layout, leaf, add);
+    });
+    CHECK(others_helped);
+    CHECK(summed == 40);
+    for (const auto& sum : sums) CHECK(sum == 40.0 * piece_frames);
+}
+
+TEST_CASE("an item of a work list is taken once, from whichever end") {
+    WorkList list;
+    CHECK_FALSE(list.take_front());
+    list.refill(20'000);
+    std::vector<std::atomic<int>> taken(20'000);
+    {
+        std::vector<std::jthread> takers;
+        for (int t = 0; t < 4; ++t) {
+            takers.emplace_back([&, t] {
+                while (const auto item = t % 2 ? list.take_back() : list.take_front()) {
+                    ++taken.at(size_t(*item));
+                }
+            });
+        }
+    }
+    CHECK(std::all_of(taken.begin(), taken.end(), [](const auto& count) { return count == 1; }));
+    CHECK(list.left() == 0);
+    list.refill(2);
+    CHECK(list.take_back() == 1);
+    CHECK(list.take_front() == 0);
+    CHECK_FALSE(list.take_back());
 }
 
 TEST_CASE("a sum over nothing is nothing at every rank") {

@@ -30,9 +30,16 @@ class MeetingPlace {
     };
     using Offers = std::vector<Offer>;
 
-    explicit MeetingPlace(int ranks) : offers_(static_cast<size_t>(ranks)) {}
+    explicit MeetingPlace(int ranks)
+        : offers_(static_cast<size_t>(ranks)), work_lists_(static_cast<size_t>(ranks)) {}
 
     int ranks() const { return static_cast<int>(offers_.size()); }
+
+    std::vector<kinetome::WorkList*> work_lists() {
+        std::vector<kinetome::WorkList*> lists;
+        for (kinetome::WorkList& list : work_lists_) lists.push_back(&list);
+        return lists;
+    }
 
     void announce_failure() { failure_announced_ = true; }
     bool failure_announced() const { return failure_announced_; }
@@ -61,6 +68,7 @@ class MeetingPlace {
     int here_ = 0;
     Offers offers_;
     std::shared_ptr<const Offers> met_;
+    std::vector<kinetome::WorkList> work_lists_;
 };
 
 class ThreadCommunicator final : public kinetome::Communicator {
@@ -87,6 +95,7 @@ class ThreadCommunicator final : public kinetome::Communicator {
         }
         return {};
     }
+    std::vector<kinetome::WorkList*> work_lists() override { return place_.work_lists(); }
     void check() override {
         if (failure_ || place_.failure_announced()) meet(Call::check, {});
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinetome/base/error.h"
+#include "kinetome/base/work_list.h"
 
 namespace kinetome {
 
@@ -37,6 +38,11 @@ class Communicator {
     static constexpr int nobody = -1;
     /// Nobody goes on before all have come here.
     void wait_for_all() { gather_to_all({}); }
+
+    /// One list a rank, in memory that the ranks of a machine share; null for ranks elsewhere.
+    /// Empty when nothing is shared. A rank refills its own, and only between a call that all make
+    /// and the next one.
+    virtual std::vector<WorkList*> work_lists() { return {}; }
 
     /// Throws RankFailure when another rank has failed. Each rank may ask whenever it likes:
     /// between pieces of long work of its own, so that it does not go on for nothing.

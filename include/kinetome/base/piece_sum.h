@@ -27,6 +27,32 @@ int64_t runs_per_rank(int64_t pieces, int rank_count);
 /// the ranks back and forth. Every piece is in exactly one share; a rank may have none.
 std::vector<int64_t> share_of_pieces(const PieceLayout& layout, int rank, int rank_count);
 
+/// The pieces of a sum as a rank takes them: those of its own share first, in order, then those
+/// that ranks on the same machine have not come to.
+class SharedPieces {
+  public:
+    SharedPieces(const PieceLayout& layout, const Workers& workers);
+    SharedPieces(const SharedPieces&) = delete;
+    SharedPieces& operator=(const SharedPieces&) = delete;
+
+    /// No more than so many pieces can come out.
+    int64_t most() const { return most_; }
+    /// Thread-safe; nothing when none is left.
+    std::optional<int64_t> take();
+
+  private:
+    struct Share {
+        WorkList* left;
+        std::vector<int64_t> pieces;
+        int64_t piece(int64_t item) const { return pieces[static_cast<size_t>(item)]; }
+    };
+
+    WorkList unshared_;  ///< of a rank that shares nothing
+    Share own_{&unshared_, {}};
+    std::vector<Share> others_;  ///< on this machine
+    int64_t most_ = 0;
+};
+
 /// Pieces in a fixed tree inside their group, groups in a fixed tree above. Empty groups take no
 /// part in the arithmetic but keep their place.
 template <class Sum, class Merge>
@@ -131,20 +157,24 @@ class PieceTree {
 };
 
 /// Sum of leaf(piece) over all pieces of a layout, merged by merge(left, right), the same at every
-/// rank; nothing when there is no piece. leaf() is called for this rank's share, on several
-/// threads.
+/// rank; nothing when there is no piece. leaf() is called on several threads, for this rank's share
+/// and for pieces of other shares whose ranks, on the same machine, are slower.
 template <class Sum, class Leaf, class Merge>
 std::optional<Sum> sum_pieces(const Workers& workers, const PieceLayout& layout, Leaf&& leaf,
                               Merge merge) {
     PieceTree<Sum, Merge> tree(layout, merge);
-    if (workers.is_root()) tree.insert_empty_groups();
-    const std::vector<int64_t> share =
-        share_of_pieces(layout, workers.rank(), workers.rank_count());
-    parallel_for(workers.threads, static_cast<int64_t>(share.size()), [&](int64_t i) {
-        const int64_t piece = share[static_cast<size_t>(i)];
+    const auto sum_piece = [&](int64_t piece) {
         tree.insert_piece(piece, leaf(layout.pieces[static_cast<size_t>(piece)]));
+    };
+    if (workers.is_root()) tree.insert_empty_groups();
+    if (workers.rank_count() == 1) {
+        parallel_for(workers.threads, static_cast<int64_t>(layout.pieces.size()), sum_piece);
+        return tree.take_root();
+    }
+    SharedPieces pieces(layout, workers);
+    parallel_for(workers.threads, pieces.most(), [&](int64_t) {
+        if (const std::optional<int64_t> piece = pieces.take()) sum_piece(*piece);
     });
-    if (workers.rank_count() == 1) return tree.take_root();
 
     // Neighbours join their subtrees, then neighbouring pairs theirs: what joins shrinks to the few
     // subtrees that wait at the edges of runs, so that no rank ever holds those of all.

@@ -1,7 +1,5 @@
 #include "mpi_communicator.h"
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -66,6 +64,32 @@ MpiCommunicator::MpiCommunicator(size_t largest_message)
     }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    share_work_lists();
+}
+
+void MpiCommunicator::share_work_lists() {
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine_);
+    int here = 1;
+    MPI_Comm_size(machine_, &here);
+    if (here == 1) return;
+    constexpr MPI_Aint list_bytes = 64;  // a cache line each: ranks do not wait for each other's
+    static_assert(sizeof(WorkList) <= list_bytes && std::is_trivially_destructible_v<WorkList>);
+    void* mine = nullptr;
+    MPI_Win_allocate_shared(list_bytes, 1, MPI_INFO_NULL, machine_, &mine, &shared_memory_);
+    new (mine) WorkList;
+
+    std::vector<int> world_ranks(static_cast<size_t>(here));
+    MPI_Allgather(&rank_, 1, MPI_INT, world_ranks.data(), 1, MPI_INT, machine_);
+    work_lists_.assign(static_cast<size_t>(size_), nullptr);
+    for (int r = 0; r < here; ++r) {
+        MPI_Aint bytes = 0;
+        int unit = 0;
+        void* list = nullptr;
+        MPI_Win_shared_query(shared_memory_, r, &bytes, &unit, &list);
+        work_lists_[static_cast<size_t>(world_ranks[static_cast<size_t>(r)])] =
+            static_cast<WorkList*>(list);
+    }
+    MPI_Barrier(machine_);  // all lists are made before any is looked at
 }
 
 MpiCommunicator::~MpiCommunicator() {
@@ -76,6 +100,8 @@ MpiCommunicator::~MpiCommunicator() {
     } catch (const std::exception& error) {
         abort_all_ranks(rank_, error.what());
     }
+    if (shared_memory_ != MPI_WIN_NULL) MPI_Win_free(&shared_memory_);
+    MPI_Comm_free(&machine_);
     MPI_Finalize();
 }
 

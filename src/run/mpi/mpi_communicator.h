@@ -3,6 +3,8 @@
 // whichever call they are, all leave by the same round, and MPI can be ended in order.
 #pragma once
 
+#include <mpi.h>
+
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -25,6 +27,7 @@ class MpiCommunicator final : public Communicator {
     std::vector<std::string> gather(std::string bytes) override;
     std::string broadcast(std::string bytes) override;
     std::string pass(int to, std::string bytes) override;
+    std::vector<WorkList*> work_lists() override { return work_lists_; }
     void check() override;
     ExitCode fail(ExitCode code, const std::string& message) noexcept override;
 
@@ -53,10 +56,15 @@ class MpiCommunicator final : public Communicator {
     void in_parts(std::string& bytes, Pass pass) const;
     void broadcast_from(int rank, std::string& bytes) const;
 
+    void share_work_lists();
+
     size_t largest_message_;
     int rank_ = 0;
     int size_ = 1;
     std::optional<RankFailure> failure_;
+    MPI_Comm machine_ = MPI_COMM_NULL;  ///< the ranks on this machine
+    MPI_Win shared_memory_ = MPI_WIN_NULL;
+    std::vector<WorkList*> work_lists_;
 };
 
 }  // namespace kinetome
