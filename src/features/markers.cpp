@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "clip_rows.h"
-#include "root_motion.h"
+#include "kinetome/features/root_motion.h"
 
 namespace kinetome {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "clip_rows.h"
-#include "root_motion.h"
+#include "kinetome/features/root_motion.h"
 
 namespace kinetome {
 

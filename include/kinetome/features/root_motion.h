@@ -16,7 +16,7 @@ struct RootPose {
 };
 
 /// The joint of the role `root` (joint 0 without such a role) and the joints above it, which some
-/// rigs have: a reference on the floor, say.
+/// rigs have: a reference on the floor, say. Keeps a reference to the skeleton.
 class RootChain {
   public:
     explicit RootChain(const Skeleton& skeleton);
@@ -26,7 +26,16 @@ class RootChain {
     /// `dofs` are all values of a frame.
     RootPose pose(std::span<const float> dofs) const;
 
+    /// Whether the root itself has three translations and three rotations: any pose can be set.
+    bool is_free() const;
+    /// Puts the root there: joints above it are set to zero, its own angles to those nearest to the
+    /// ones of `near`, a frame too, which may be `dofs`. Throws std::invalid_argument when the root
+    /// is not free.
+    void set_pose(std::span<float> dofs, const RootPose& pose, std::span<const float> near) const;
+
   private:
+    const Joint& joint(int index) const { return skeleton_.joints()[static_cast<size_t>(index)]; }
+
     const Skeleton& skeleton_;
     std::vector<int> joints_;  ///< topmost first
 };
