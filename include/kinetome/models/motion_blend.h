@@ -1,0 +1,69 @@
+// Motion put together frame by frame from several clips at once, going on where it stands.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "kinetome/features/placement.h"
+#include "kinetome/formats/clip.h"
+#include "kinetome/formats/pose_interpolation.h"
+
+namespace kinetome {
+
+/// What one clip gives to one frame. Moments are frames of the clip and need not be whole; before
+/// its first and after its last frame the pose is held and the root goes on as it moves there.
+struct MotionShare {
+    const Clip* clip = nullptr;
+    double moment = 0;
+    double moment_before = 0;  ///< what it would give to the frame before
+    double weight = 1;         ///< of all shares' weights, which need not add up to 1
+};
+
+/// Joints, height and tilt of a frame are blended pose by pose (PoseInterpolation, in the order of
+/// the shares); place and heading on the floor are not: the root's steps are, as seen from the
+/// root, and each frame is one step from the last. So no clip needs to be moved where another one
+/// stands, and a blend of equal clips is that clip.
+class MotionBlend {
+  public:
+    /// All clips are of this skeleton. Throws std::invalid_argument when its root is not free to go
+    /// anywhere (RootChain::is_free).
+    MotionBlend(std::shared_ptr<const Skeleton> skeleton, double rate);
+
+    /// The next frame. The first one stands where its first share's clip does. Throws
+    /// std::invalid_argument for a clip without frames or with another number of columns, for
+    /// moments that are not finite, for weights that are negative or all zero.
+    void append(std::span<const MotionShare> shares);
+
+    int64_t frames() const { return static_cast<int64_t>(rows_.size()); }
+    /// All frames so far.
+    Clip clip() const;
+
+  private:
+    using Row = std::vector<float>;
+    void check(std::span<const MotionShare> shares) const;
+    /// The clip at any moment, standing at the origin and facing along +z.
+    Row centred_pose(const Clip& clip, double moment) const;
+    Placement placement(const Clip& clip, double moment) const;
+
+    std::shared_ptr<const Skeleton> skeleton_;
+    double rate_;
+    RootChain root_;
+    PoseInterpolation interpolate_;
+    Placement placement_;
+    std::vector<Row> rows_;
+};
+
+/// Frames of a clip as one of several to be blended: [first, end), played in its share of the time.
+struct BlendPart {
+    const Clip* clip = nullptr;
+    int64_t first = 0, end = 0;
+    double weight = 1;
+};
+
+/// All parts at once from beginning to end, each at the speed that makes it last as long as the
+/// blend: the weighted mean of their lengths, rounded, at least a frame. Throws what MotionBlend
+/// throws, and std::invalid_argument for parts of different rates or none.
+Clip blend_motions(std::span<const BlendPart> parts);
+
+}  // namespace kinetome

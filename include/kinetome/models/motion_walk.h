@@ -1,0 +1,42 @@
+// Runs of clips joined to one motion: walks through a motion graph, and any other sequence.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kinetome/formats/clip.h"
+#include "kinetome/models/motion_graph.h"
+
+namespace kinetome {
+
+/// A stretch of a clip that is played without a break: its frames [first, end), which need not be
+/// whole. Its first `fade_in` frames and the last `fade_out` frames of the run before are played
+/// together, while the one goes over into the other.
+///
+/// A fade lasts (fade_out + fade_in) / 2 frames. Both sides pass through it in equal shares, at
+/// first at the speed of the one, at last at the speed of the other.
+struct MotionRun {
+    int32_t clip = 0;
+    double first = 0, end = 0;
+    double fade_in = 0;
+    double fade_out = 0;  ///< 0 in the last run
+    bool operator==(const MotionRun&) const = default;
+};
+
+/// Length of what play_runs makes, in frames, not rounded.
+double frames_of_runs(std::span<const MotionRun> runs);
+
+/// The runs as one motion: rotations by slerp with smoothstep weights in a fade, place and heading
+/// going on from where they are (MotionBlend). Clips are of one skeleton and one rate; a run may
+/// reach beyond its clip's ends, where the pose is held. Throws std::invalid_argument for clips
+/// that differ, runs of clips that are not there, runs shorter than their fades, or no run.
+Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs);
+
+/// Pieces one after another, with fades of at most `fade_frames` about every seam: frames before
+/// the next piece's first and after the last piece's end are blended there, so that the sequence is
+/// as long as its pieces. A fade reaches at most to the middle of a piece; none where a piece goes
+/// on in its own clip.
+std::vector<MotionRun> runs_of_pieces(std::span<const MotionPiece> pieces, double fade_frames);
+
+}  // namespace kinetome

@@ -1,0 +1,133 @@
+#include "kinetome/models/motion_blend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace kinetome {
+namespace {
+
+std::span<const float> frame_of(const Clip& clip, int64_t frame) {
+    return {clip.motion.row(frame).data(), static_cast<size_t>(clip.motion.cols())};
+}
+
+Placement scaled(const Placement& step, double by) {
+    return {.x = by * step.x, .z = by * step.z, .heading = by * step.heading};
+}
+
+double total_weight(std::span<const MotionShare> shares) {
+    double total = 0;
+    for (const MotionShare& share : shares) total += share.weight;
+    return total;
+}
+
+}  // namespace
+
+MotionBlend::MotionBlend(std::shared_ptr<const Skeleton> skeleton, double rate)
+    : skeleton_(std::move(skeleton)), rate_(rate), root_(*skeleton_), interpolate_(*skeleton_) {
+    if (!root_.is_free()) {
+        throw std::invalid_argument("motion of skeleton '" + skeleton_->name() +
+                                    "' cannot be joined: its root lacks translations or rotations");
+    }
+}
+
+void MotionBlend::check(std::span<const MotionShare> shares) const {
+    for (const MotionShare& share : shares) {
+        if (share.clip->frames() == 0 || share.clip->motion.cols() != skeleton_->dof_count()) {
+            throw std::invalid_argument("a clip to be blended has no frames or another skeleton");
+        }
+        if (!std::isfinite(share.moment) || !std::isfinite(share.moment_before)) {
+            throw std::invalid_argument("the moments of a blend must be finite");
+        }
+        if (!(share.weight >= 0)) throw std::invalid_argument("a weight of a blend is negative");
+    }
+    const double total = total_weight(shares);
+    if (!(total > 0) || !std::isfinite(total)) {
+        throw std::invalid_argument("the weights of a blend must have a sum above zero");
+    }
+}
+
+MotionBlend::Row MotionBlend::centred_pose(const Clip& clip, double moment) const {
+    const double inside = std::clamp(moment, 0.0, static_cast<double>(clip.frames() - 1));
+    const auto frame = static_cast<int64_t>(inside);
+    const double share = inside - static_cast<double>(frame);
+    const auto centred = [&](int64_t at) {
+        const auto dofs = frame_of(clip, at);
+        Row row(dofs.begin(), dofs.end());
+        place(root_, row, {}, row);
+        return row;
+    };
+    Row row = centred(frame);
+    if (share > 0) interpolate_(row, centred(frame + 1), share, row);
+    return row;
+}
+
+Placement MotionBlend::placement(const Clip& clip, double moment) const {
+    const auto at = [&](int64_t frame) { return placement_of(root_.pose(frame_of(clip, frame))); };
+    if (clip.frames() == 1) return at(0);
+    const double whole =
+        std::clamp(std::floor(moment), 0.0, static_cast<double>(clip.frames() - 2));
+    const auto frame = static_cast<int64_t>(whole);
+    return after_step(at(frame), scaled(step_between(at(frame), at(frame + 1)), moment - whole));
+}
+
+void MotionBlend::append(std::span<const MotionShare> shares) {
+    check(shares);
+    Row row;
+    Placement step;
+    double weight = 0;  // of the shares that row blends
+    for (const MotionShare& share : shares) {
+        if (share.weight == 0) continue;
+        weight += share.weight;
+        Row pose = centred_pose(*share.clip, share.moment);
+        if (row.empty()) {
+            row = std::move(pose);
+        } else {
+            interpolate_(row, pose, share.weight / weight, row);
+        }
+        const Placement own = scaled(step_between(placement(*share.clip, share.moment_before),
+                                                  placement(*share.clip, share.moment)),
+                                     share.weight);
+        step = {step.x + own.x, step.z + own.z, step.heading + own.heading};
+    }
+    placement_ = rows_.empty() ? placement(*shares.front().clip, shares.front().moment)
+                               : after_step(placement_, scaled(step, 1 / weight));
+    const Row near = rows_.empty() ? row : rows_.back();
+    place(root_, row, placement_, near);
+    rows_.push_back(std::move(row));
+}
+
+Clip MotionBlend::clip() const {
+    Clip clip{skeleton_, {}, rate_};
+    clip.motion.resize(frames(), skeleton_->dof_count());
+    for (int64_t frame = 0; frame < frames(); ++frame) {
+        std::ranges::copy(rows_[static_cast<size_t>(frame)], clip.motion.row(frame).data());
+    }
+    return clip;
+}
+
+Clip blend_motions(std::span<const BlendPart> parts) {
+    if (parts.empty()) throw std::invalid_argument("there is nothing to blend");
+    double frames = 0, total = 0;
+    for (const BlendPart& part : parts) {
+        if (part.clip->rate != parts.front().clip->rate) {
+            throw std::invalid_argument("motions to be blended must have one rate");
+        }
+        frames += part.weight * static_cast<double>(part.end - part.first);
+        total += part.weight;
+    }
+    MotionBlend blend(parts.front().clip->skeleton, parts.front().clip->rate);
+    const double length = std::max(1.0, std::nearbyint(frames / total));
+    for (double frame = 0; frame < length; ++frame) {
+        std::vector<MotionShare> shares;
+        for (const BlendPart& part : parts) {
+            const double speed = static_cast<double>(part.end - part.first) / length;
+            const double moment = static_cast<double>(part.first) + frame * speed;
+            shares.push_back({part.clip, moment, moment - speed, part.weight});
+        }
+        blend.append(shares);
+    }
+    return blend.clip();
+}
+
+}  // namespace kinetome

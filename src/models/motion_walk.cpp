@@ -1,0 +1,157 @@
+#include "kinetome/models/motion_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kinetome/models/motion_blend.h"
+
+namespace kinetome {
+namespace {
+
+double smoothstep(double share) {
+    return share * share * (3 - 2 * share);
+}
+
+/// Going over from one side to the other. Time passes with the share s of the fade as
+/// dt/ds = (1 - w) out + w in, w = smoothstep(s): so it goes at the speed of each side where only
+/// that side is seen.
+struct Fade {
+    double out = 0, in = 0;  ///< frames of the two sides
+
+    double frames() const { return (out + in) / 2; }
+    double time(double share) const {
+        const double cube = share * share * share;
+        return out * share + (in - out) * (cube - cube * share / 2);
+    }
+    /// The inverse of time, by bisection: time rises with the share, however unlike the sides are.
+    double share(double at) const {
+        double low = 0, high = 1;
+        for (int i = 0; i < 52; ++i) {
+            const double middle = (low + high) / 2;
+            (time(middle) <= at ? low : high) = middle;
+        }
+        return low;
+    }
+};
+
+/// One run on the time line of the whole.
+struct TimedRun {
+    MotionRun run;
+    Fade before, after;
+    double start = 0, end = 0;  ///< frames of the whole, not rounded; its fades among them
+
+    /// Frame of the clip at frame `at` of the whole; at one speed before the start.
+    double moment(double at) const {
+        const double time = at - start;
+        if (time < 0) return run.first + time;
+        if (time < before.frames()) return run.first + run.fade_in * before.share(time);
+        const double left = end - at;
+        if (left < after.frames()) {
+            return run.end - run.fade_out * (1 - after.share(after.frames() - left));
+        }
+        return run.first + run.fade_in + (time - before.frames());
+    }
+    double weight(double at) const {
+        const double time = at - start, left = end - at;
+        double weight = 1;
+        if (time < before.frames()) weight = smoothstep(before.share(time));
+        if (left < after.frames()) {
+            weight = std::min(weight, 1 - smoothstep(after.share(after.frames() - left)));
+        }
+        return weight;
+    }
+};
+
+std::vector<TimedRun> on_time_line(std::span<const MotionRun> runs) {
+    std::vector<TimedRun> timed;
+    double start = 0;
+    for (size_t i = 0; i < runs.size(); ++i) {
+        const MotionRun& run = runs[i];
+        const Fade before{i > 0 ? runs[i - 1].fade_out : 0, run.fade_in};
+        const Fade after{run.fade_out, i + 1 < runs.size() ? runs[i + 1].fade_in : 0};
+        const double alone = run.end - run.first - run.fade_in - run.fade_out;
+        const double end = start + before.frames() + alone + after.frames();
+        timed.push_back({run, before, after, start, end});
+        start = end - after.frames();
+    }
+    return timed;
+}
+
+/// Of sums of lengths, in frames.
+constexpr double rounding = 1e-6;
+
+void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
+    if (runs.empty()) throw std::invalid_argument("there are no motions to join");
+    for (const MotionRun& run : runs) {
+        if (run.clip < 0 || static_cast<size_t>(run.clip) >= clips.size()) {
+            throw std::invalid_argument("a run names a clip that is not there");
+        }
+        const Clip& clip = clips[static_cast<size_t>(run.clip)];
+        const Clip& first = clips[static_cast<size_t>(runs.front().clip)];
+        if (clip.rate != first.rate || clip.skeleton != first.skeleton) {
+            throw std::invalid_argument("motions to be joined must have one skeleton and one rate");
+        }
+        const double alone = run.end - run.first - run.fade_in - run.fade_out;
+        if (!(alone >= -rounding && run.fade_in >= 0 && run.fade_out >= 0)) {
+            throw std::invalid_argument("a run is shorter than its fades");
+        }
+    }
+    if (runs.front().fade_in != 0 || runs.back().fade_out != 0) {
+        throw std::invalid_argument("the ends of a motion have nothing to fade with");
+    }
+}
+
+}  // namespace
+
+double frames_of_runs(std::span<const MotionRun> runs) {
+    return runs.empty() ? 0 : on_time_line(runs).back().end;
+}
+
+Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs) {
+    check(clips, runs);
+    const auto timed = on_time_line(runs);
+    const Clip& first = clips[static_cast<size_t>(runs.front().clip)];
+    MotionBlend blend(first.skeleton, first.rate);
+    size_t begin = 0;  // of the runs that are not over
+    for (double at = 0; at < timed.back().end - rounding; ++at) {
+        while (timed[begin].end <= at) ++begin;
+        std::vector<MotionShare> shares;
+        for (size_t i = begin; i < timed.size() && timed[i].start <= at; ++i) {
+            const TimedRun& run = timed[i];
+            shares.push_back({&clips[static_cast<size_t>(run.run.clip)], run.moment(at),
+                              run.moment(at - 1), run.weight(at)});
+        }
+        blend.append(shares);
+    }
+    return blend.clip();
+}
+
+std::vector<MotionRun> runs_of_pieces(std::span<const MotionPiece> pieces, double fade_frames) {
+    std::vector<MotionRun> runs;
+    const auto continues = [](const MotionRun& run, const MotionPiece& piece) {
+        return run.clip == piece.clip && run.end == static_cast<double>(piece.first);
+    };
+    for (const MotionPiece& piece : pieces) {
+        if (!runs.empty() && continues(runs.back(), piece)) {
+            runs.back().end = static_cast<double>(piece.end);
+        } else {
+            runs.push_back({.clip = piece.clip,
+                            .first = static_cast<double>(piece.first),
+                            .end = static_cast<double>(piece.end)});
+        }
+    }
+    for (size_t i = 0; i + 1 < runs.size(); ++i) {
+        MotionRun& before = runs[i];
+        MotionRun& after = runs[i + 1];
+        const double shorter =
+            std::min(before.end - before.first - before.fade_in / 2, after.end - after.first);
+        const double reach = std::min(fade_frames, shorter) / 2;
+        before.end += reach;
+        after.first -= reach;
+        before.fade_out = after.fade_in = 2 * reach;
+    }
+    return runs;
+}
+
+}  // namespace kinetome
