@@ -6,7 +6,7 @@
 namespace kinetome {
 
 int64_t runs_per_rank(int64_t pieces, int rank_count) {
-    constexpr int64_t most_runs = 4, least_pieces = 4;
+    constexpr int64_t most_runs = 2, least_pieces = 4;
     return rank_count == 1
                ? 1
                : std::clamp<int64_t>(pieces / (rank_count * least_pieces), 1, most_runs);
