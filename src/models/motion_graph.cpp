@@ -8,10 +8,13 @@
 namespace kinetome {
 namespace {
 
-void check_nodes(const std::vector<MotionPiece>& pieces, const std::vector<int32_t>& node_of,
-                 int32_t nodes) {
+void check(const std::vector<MotionPiece>& pieces, const std::vector<int32_t>& node_of,
+           int32_t nodes) {
     if (node_of.size() != pieces.size()) {
         throw std::invalid_argument("each piece of a motion graph needs a node");
+    }
+    if (std::ranges::any_of(pieces, [](const auto& piece) { return piece.frames() <= 0; })) {
+        throw std::invalid_argument("a piece of a motion graph has no frames");
     }
     if (std::ranges::any_of(node_of, [=](int32_t node) { return node < 0 || node >= nodes; })) {
         throw std::invalid_argument("a piece of a motion graph names a node that is not there");
@@ -52,7 +55,7 @@ std::span<const T> part(const std::vector<T>& all, const std::vector<int64_t>& o
 MotionGraph::MotionGraph(std::vector<MotionPiece> pieces, std::vector<int32_t> node_of,
                          int32_t nodes, int64_t longest_gap)
     : pieces_(std::move(pieces)), node_of_(std::move(node_of)) {
-    check_nodes(pieces_, node_of_, nodes);
+    check(pieces_, node_of_, nodes);
 
     members_.resize(pieces_.size());
     std::iota(members_.begin(), members_.end(), 0);

@@ -82,6 +82,7 @@ TEST_CASE("pieces that follow each other in a take make the edges of their nodes
 
 TEST_CASE("what cannot be a motion graph is refused") {
     CHECK_THROWS_AS(MotionGraph({{0, 0, 10}, {0, 9, 20}}, {0, 0}, 1, 0), std::invalid_argument);
+    CHECK_THROWS_AS(MotionGraph({{0, 10, 10}}, {0}, 1, 0), std::invalid_argument);
     CHECK_THROWS_AS(MotionGraph({{0, 0, 10}}, {1}, 1, 0), std::invalid_argument);
     CHECK_THROWS_AS(MotionGraph({{0, 0, 10}}, {}, 1, 0), std::invalid_argument);
     CHECK(MotionGraph({}, {}, 0, 0).nodes() == 0);

@@ -29,9 +29,9 @@ struct Succession {
 class MotionGraph {
   public:
     MotionGraph() = default;
-    /// `node_of` names the node of each piece, in [0, nodes). Pieces stand in any order; those of a
-    /// clip do not overlap. A piece is followed by the next one of its clip unless more than
-    /// `longest_gap` frames lie between. Throws std::invalid_argument.
+    /// `node_of` names the node of each piece, in [0, nodes). Pieces stand in any order, have
+    /// frames, and do not overlap in their clip. A piece is followed by the next one of its clip
+    /// unless more than `longest_gap` frames lie between. Throws std::invalid_argument.
     MotionGraph(std::vector<MotionPiece> pieces, std::vector<int32_t> node_of, int32_t nodes,
                 int64_t longest_gap);
 

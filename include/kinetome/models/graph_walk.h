@@ -1,0 +1,48 @@
+// Random walks through a motion graph, and the runs of clips they play (S1 §4, S3 §6.2).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kinetome/models/motion_graph.h"
+#include "kinetome/models/motion_walk.h"
+
+namespace kinetome {
+
+struct WalkRequest {
+    double frames = 0;               ///< wanted length, at the rate of the graph's pieces
+    uint64_t seed = 1;               ///< the same seed walks the same way
+    std::vector<int32_t> from = {};  ///< nodes of which one begins; empty: any
+    std::vector<int32_t> to = {};    ///< nodes of which one ends; empty: any
+};
+
+/// A node is entered by one of its pieces and left by another, or by the same.
+struct WalkStep {
+    int32_t node = 0;
+    int32_t entry = 0, exit = 0;  ///< pieces; equal in the last step
+    bool operator==(const WalkStep&) const = default;
+};
+
+struct GraphWalk {
+    std::vector<WalkStep> steps;
+    double frames = 0;  ///< what its runs last
+    /// Nothing (that leads to a wanted end) followed the last node, and `frames` falls short.
+    bool ended_early = false;
+};
+
+/// Goes from node to node as the takes do: each succession out of a node is as likely as any other.
+/// It keeps to nodes from which one of `to` can be reached, and does not get stuck while there is a
+/// way out: it leads to the cycle of nodes with most pieces among those within reach, and stays.
+/// From the moment when the shortest way to `to` fills the wanted length it takes that way; so
+/// with `to` the walk ends with a whole piece, else with the first piece that fills the length.
+/// No steps when no node of `from` leads to one of `to`. Throws std::invalid_argument for nodes
+/// that are not there.
+GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request);
+
+/// What the walk plays: inside a node it goes over from the entry to the exit, in the middle of
+/// both, in fades of at most `fade_frames`; from node to node it goes on in the clip of the exit,
+/// with the frames that lie between. So every seam is one that a take has.
+std::vector<MotionRun> runs_of_walk(const MotionGraph& graph, const std::vector<WalkStep>& steps,
+                                    double fade_frames);
+
+}  // namespace kinetome

@@ -1,0 +1,230 @@
+#include "kinetome/models/graph_walk.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <stdexcept>
+#include <utility>
+
+#include "kinetome/base/random.h"
+
+namespace kinetome {
+namespace {
+
+constexpr double unreachable = std::numeric_limits<double>::infinity();
+
+std::vector<int32_t> all_nodes(const MotionGraph& graph) {
+    std::vector<int32_t> nodes(static_cast<size_t>(graph.nodes()));
+    std::iota(nodes.begin(), nodes.end(), 0);
+    return nodes;
+}
+
+double frames(const MotionGraph& graph, int32_t piece) {
+    return static_cast<double>(graph.piece(piece).frames());
+}
+
+/// What it takes from the seam where `entry` begins to the one where what follows `exit` does.
+double frames_of_step(const MotionGraph& graph, int32_t entry, const Succession& exit) {
+    return (frames(graph, entry) + frames(graph, exit.piece)) / 2 +
+           static_cast<double>(graph.gap(exit));
+}
+
+/// Where a walk may go, and where it should.
+class Guide {
+  public:
+    Guide(const MotionGraph& graph, const WalkRequest& request) : graph_(graph) {
+        const auto anywhere = all_nodes(graph);
+        const auto& goals = request.to.empty() ? anywhere : request.to;
+        const auto& sources = request.from.empty() ? anywhere : request.from;
+        allowed_ = nodes_that_reach(graph, goals);
+        to_goal_ = frames_to(goals);
+
+        std::vector<int32_t> starts;
+        for (const int32_t node : sources) {
+            if (allowed(node) && !graph.members(node).empty()) starts.push_back(node);
+        }
+        const auto cycle = largest_cycle(starts);
+        lasting_ = nodes_that_reach(graph, cycle);
+        // Of the starts, those that lead to the cycle.
+        const auto last = std::ranges::stable_partition(
+            starts, [&](int32_t node) { return cycle.empty() || lasting(node); });
+        starts.erase(last.begin(), last.end());
+        if (request.from.empty() && !cycle.empty()) starts = cycle;
+        starts_ = std::move(starts);
+    }
+
+    const std::vector<int32_t>& starts() const { return starts_; }
+    /// Frames from entering a node to the end of the nearest goal, by the mean length of pieces.
+    double frames_to_goal(int32_t node) const { return to_goal_[static_cast<size_t>(node)]; }
+
+    /// Successions to nodes from which the walk can go on: for ever, if there are such.
+    std::vector<Succession> ways_on(int32_t node) const {
+        std::vector<Succession> open, for_ever;
+        for (const Succession& way : graph_.successions(node)) {
+            const int32_t target = graph_.node_of(way.next);
+            if (allowed(target)) open.push_back(way);
+            if (allowed(target) && lasting(target)) for_ever.push_back(way);
+        }
+        return for_ever.empty() ? open : for_ever;
+    }
+
+    /// Successions on the shortest way to a goal.
+    std::vector<Succession> ways_to_goal(int32_t node) const {
+        std::vector<Succession> ways;
+        double least = unreachable;
+        for (const Succession& way : graph_.successions(node)) {
+            const double left = frames_to_goal(graph_.node_of(way.next));
+            if (left < least) ways.clear();
+            least = std::min(least, left);
+            if (left == least && left < unreachable) ways.push_back(way);
+        }
+        return ways;
+    }
+
+  private:
+    bool allowed(int32_t node) const { return allowed_[static_cast<size_t>(node)]; }
+    bool lasting(int32_t node) const { return lasting_[static_cast<size_t>(node)]; }
+
+    /// The nodes of the cycle with most pieces within reach; empty when there is none.
+    std::vector<int32_t> largest_cycle(const std::vector<int32_t>& starts) const {
+        const auto reached = nodes_reached(graph_, starts);
+        const StrongComponents components = strong_components(graph_);
+        std::vector<int32_t> best;
+        size_t best_pieces = 0;
+        for (size_t i = 0; i < components.nodes.size(); ++i) {
+            const auto& nodes = components.nodes[i];
+            const bool usable = reached[static_cast<size_t>(nodes.front())];
+            if (!components.cyclic[i] || !usable || !allowed(nodes.front())) continue;
+            size_t pieces = 0;
+            for (const int32_t node : nodes) pieces += graph_.members(node).size();
+            if (pieces <= best_pieces) continue;
+            best_pieces = pieces;
+            best = nodes;
+        }
+        return best;
+    }
+
+    double mean_frames(int32_t node) const {
+        double sum = 0;
+        for (const int32_t piece : graph_.members(node)) sum += frames(graph_, piece);
+        const auto count = static_cast<double>(graph_.members(node).size());
+        return count > 0 ? sum / count : 0;
+    }
+
+    /// Dijkstra, against the edges.
+    std::vector<double> frames_to(const std::vector<int32_t>& goals) const {
+        std::vector<std::vector<int32_t>> sources(static_cast<size_t>(graph_.nodes()));
+        for (int32_t node = 0; node < graph_.nodes(); ++node) {
+            for (const int32_t target : graph_.targets(node)) {
+                sources[static_cast<size_t>(target)].push_back(node);
+            }
+        }
+        std::vector<double> least(sources.size(), unreachable);
+        using Entry = std::pair<double, int32_t>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        const auto improve = [&](int32_t node, double left) {
+            const double here = left + mean_frames(node);
+            if (here >= least[static_cast<size_t>(node)]) return;
+            least[static_cast<size_t>(node)] = here;
+            queue.emplace(here, node);
+        };
+        for (const int32_t goal : goals) improve(goal, 0);
+        while (!queue.empty()) {
+            const auto [left, node] = queue.top();
+            queue.pop();
+            if (left > least[static_cast<size_t>(node)]) continue;
+            for (const int32_t source : sources[static_cast<size_t>(node)]) improve(source, left);
+        }
+        return least;
+    }
+
+    const MotionGraph& graph_;
+    std::vector<bool> allowed_, lasting_;
+    std::vector<double> to_goal_;
+    std::vector<int32_t> starts_;
+};
+
+template <class T>
+const T& any_of(const std::vector<T>& choices, RandomStream& random) {
+    return choices[static_cast<size_t>(random.below(choices.size()))];
+}
+
+MotionRun run_of(const MotionPiece& piece) {
+    return {.clip = piece.clip,
+            .first = static_cast<double>(piece.first),
+            .end = static_cast<double>(piece.end)};
+}
+
+void check(const MotionGraph& graph, const std::vector<int32_t>& nodes) {
+    const auto outside = [&](int32_t node) { return node < 0 || node >= graph.nodes(); };
+    if (std::ranges::any_of(nodes, outside)) {
+        throw std::invalid_argument("a walk names a node that is not in its graph");
+    }
+}
+
+}  // namespace
+
+GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request) {
+    check(graph, request.from);
+    check(graph, request.to);
+    const Guide guide(graph, request);
+    if (guide.starts().empty()) return {};
+    RandomStream random(request.seed, "motion walk");
+
+    std::vector<int32_t> first_pieces;
+    for (const int32_t node : guide.starts()) {
+        const auto members = graph.members(node);
+        first_pieces.insert(first_pieces.end(), members.begin(), members.end());
+    }
+    GraphWalk walk;
+    int32_t entry = any_of(first_pieces, random);
+    const bool has_goal = !request.to.empty();
+    const auto at_goal = [&](int32_t node) { return std::ranges::count(request.to, node) > 0; };
+    while (true) {
+        const int32_t node = graph.node_of(entry);
+        const double filled =
+            walk.frames + (has_goal ? guide.frames_to_goal(node) : frames(graph, entry));
+        const bool fills = filled >= request.frames;
+        const bool arrived = fills && (!has_goal || at_goal(node));
+        std::vector<Succession> ways;
+        if (!arrived) ways = fills ? guide.ways_to_goal(node) : guide.ways_on(node);
+        if (ways.empty()) {
+            walk.steps.push_back({node, entry, entry});
+            walk.frames += frames(graph, entry);
+            walk.ended_early = walk.frames < request.frames;
+            return walk;
+        }
+        const Succession& way = any_of(ways, random);
+        walk.steps.push_back({node, entry, way.piece});
+        walk.frames += frames_of_step(graph, entry, way);
+        entry = way.next;
+    }
+}
+
+std::vector<MotionRun> runs_of_walk(const MotionGraph& graph, const std::vector<WalkStep>& steps,
+                                    double fade_frames) {
+    std::vector<MotionRun> runs;
+    for (const WalkStep& step : steps) {
+        const MotionPiece& entry = graph.piece(step.entry);
+        const MotionPiece& exit = graph.piece(step.exit);
+        if (runs.empty()) runs.push_back(run_of(entry));
+        if (step.entry == step.exit) {
+            runs.back().end = static_cast<double>(exit.end);
+            continue;
+        }
+        const auto in = static_cast<double>(entry.frames());
+        const auto out = static_cast<double>(exit.frames());
+        const double share = std::min(1.0, 2 * fade_frames / (in + out));
+        runs.back().end = static_cast<double>(entry.first) + in * (1 + share) / 2;
+        runs.back().fade_out = in * share;
+        runs.push_back({.clip = exit.clip,
+                        .first = static_cast<double>(exit.first) + out * (1 - share) / 2,
+                        .end = static_cast<double>(exit.end),
+                        .fade_in = out * share});
+    }
+    return runs;
+}
+
+}  // namespace kinetome

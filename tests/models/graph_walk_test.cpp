@@ -1,0 +1,150 @@
+#include "kinetome/models/graph_walk.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+using namespace kinetome;
+
+namespace {
+
+/// Clips as words: a letter a piece of a node, 'a' the first; pieces of 10 to 16 frames, gaps of 4
+/// where a space stands.
+MotionGraph graph_of(const std::vector<std::string>& clips, int32_t nodes) {
+    std::vector<MotionPiece> pieces;
+    std::vector<int32_t> node_of;
+    for (size_t clip = 0; clip < clips.size(); ++clip) {
+        int64_t at = 0;
+        for (const char letter : clips[clip]) {
+            const int64_t frames = 10 + int64_t(pieces.size() % 4) * 2;
+            if (letter != ' ') {
+                pieces.push_back({int32_t(clip), at, at + frames});
+                node_of.push_back(letter - 'a');
+            }
+            at += letter == ' ' ? 4 : frames;
+        }
+    }
+    return {pieces, node_of, nodes, 4};
+}
+
+std::string letters(const GraphWalk& walk) {
+    std::string word;
+    for (const WalkStep& step : walk.steps) word += char('a' + step.node);
+    return word;
+}
+
+/// Nodes as given, and each entry is what follows the exit before it.
+void check_continuous(const MotionGraph& graph, const GraphWalk& walk) {
+    for (size_t i = 0; i < walk.steps.size(); ++i) {
+        const WalkStep& step = walk.steps[i];
+        CHECK(graph.node_of(step.entry) == step.node);
+        CHECK(graph.node_of(step.exit) == step.node);
+        if (i + 1 == walk.steps.size()) continue;
+        const auto ways = graph.successions(step.node);
+        CHECK(std::ranges::count(ways, Succession{step.exit, walk.steps[i + 1].entry}) == 1);
+    }
+    CHECK(walk.steps.back().entry == walk.steps.back().exit);
+}
+
+}  // namespace
+
+TEST_CASE("a walk fills the wanted length by what takes do, its runs last what it says") {
+    const auto graph = graph_of({"aab aa", "bb a bab", "abcb"}, 3);
+    for (uint64_t seed = 0; seed < 30; ++seed) {
+        const auto walk = random_walk(graph, {.frames = 500, .seed = seed});
+        CHECK_FALSE(walk.ended_early);
+        CHECK(walk.frames >= 500);
+        CHECK(walk.frames < 524);  // a piece, a gap and half of what two pieces differ by
+        check_continuous(graph, walk);
+        for (const double fade : {0.0, 7.0, 100.0}) {
+            const auto runs = runs_of_walk(graph, walk.steps, fade);
+            CHECK(frames_of_runs(runs) == Approx(walk.frames));
+            CHECK(runs.size() <= walk.steps.size());
+            for (const MotionRun& run : runs) {
+                CHECK(run.end - run.first >= run.fade_in + run.fade_out - 1e-9);
+            }
+        }
+    }
+}
+
+TEST_CASE("a seed walks one way, seeds walk different ways") {
+    const auto graph = graph_of({"aabaa", "bbabab", "abcb"}, 3);
+    std::set<std::string> words;
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        const WalkRequest request{.frames = 400, .seed = seed};
+        const auto walk = random_walk(graph, request);
+        CHECK(walk.steps == random_walk(graph, request).steps);
+        words.insert(letters(walk));
+    }
+    CHECK(words.size() > 15);
+}
+
+TEST_CASE(
+    "a walk is not caught in a dead end while there is a way out, and settles where there is "
+    "most") {
+    // d follows a and leads nowhere; e repeats, but is the smaller cycle.
+    const auto graph = graph_of({"abab", "aaba", "ad", "ad", "ad", "aee", "cab"}, 5);
+    for (uint64_t seed = 0; seed < 30; ++seed) {
+        const auto walk = random_walk(graph, {.frames = 600, .seed = seed});
+        CHECK_FALSE(walk.ended_early);
+        CHECK(letters(walk).find_first_of("cde") == std::string::npos);
+        const auto led = random_walk(graph, {.frames = 600, .seed = seed, .from = {2}});
+        CHECK(letters(led).front() == 'c');
+        CHECK(letters(led).find_first_of("de") == std::string::npos);
+    }
+}
+
+TEST_CASE("of all successions out of a node each is as likely as any other") {
+    const auto graph = graph_of({"ab", "ab", "ab", "ac", "ba", "ca"}, 3);
+    const std::string word = letters(random_walk(graph, {.frames = 60000}));
+    const auto share = double(std::ranges::count(word, 'b')) /
+                       double(std::ranges::count(word, 'b') + std::ranges::count(word, 'c'));
+    CHECK(share == Approx(0.75).margin(0.03));
+}
+
+TEST_CASE("a walk to a node ends there, and is as long as was wanted") {
+    const auto graph = graph_of({"abab", "bcd", "aaba", "da", "ce"}, 5);
+    for (uint64_t seed = 0; seed < 30; ++seed) {
+        const auto walk = random_walk(graph, {.frames = 300, .seed = seed, .from = {0}, .to = {4}});
+        CHECK(letters(walk).front() == 'a');
+        CHECK(letters(walk).ends_with("ce"));
+        CHECK_FALSE(walk.ended_early);
+        CHECK(walk.frames >= 290);
+        CHECK(walk.frames < 400);
+        check_continuous(graph, walk);
+        // With no length wanted, straight away.
+        const auto straight = random_walk(graph, {.seed = seed, .from = {0}, .to = {4}});
+        CHECK(letters(straight) == "abce");
+    }
+}
+
+TEST_CASE("a walk that nothing can follow says that it ended early") {
+    const auto graph = graph_of({"abc", "bd"}, 4);
+    const auto walk = random_walk(graph, {.frames = 1000, .from = {0}});
+    CHECK(walk.ended_early);
+    CHECK(letters(walk).size() == 3);
+    CHECK(walk.frames < 1000);
+    check_continuous(graph, walk);
+}
+
+TEST_CASE("no walk leads where no path leads") {
+    const auto graph = graph_of({"ab", "cd"}, 5);
+    CHECK(random_walk(graph, {.frames = 10, .from = {0}, .to = {3}}).steps.empty());
+    CHECK(random_walk(graph, {.frames = 10, .from = {4}}).steps.empty());
+    CHECK(random_walk(MotionGraph({}, {}, 0, 0), {.frames = 10}).steps.empty());
+    CHECK_THROWS_AS(random_walk(graph, {.from = {5}}), std::invalid_argument);
+    CHECK_THROWS_AS(random_walk(graph, {.to = {-1}}), std::invalid_argument);
+}
+
+TEST_CASE("inside a node a walk goes over in the middle, elsewhere it plays takes as they are") {
+    //  a1 b1 (clip 0), a2 b2 after a gap of 10 (clip 1): in at a1, out by a2, then b2.
+    const MotionGraph graph({{0, 0, 40}, {0, 40, 60}, {1, 100, 160}, {1, 170, 200}}, {0, 1, 0, 1},
+                            2, 10);
+    const std::vector<WalkStep> steps = {{0, 0, 2}, {1, 3, 3}};
+    CHECK(runs_of_walk(graph, steps, 10) ==
+          std::vector<MotionRun>{{0, 0, 24, 0, 8}, {1, 124, 200, 12, 0}});
+    CHECK(runs_of_walk(graph, steps, 1000) ==
+          std::vector<MotionRun>{{0, 0, 40, 0, 40}, {1, 100, 200, 60, 0}});
+    CHECK(runs_of_walk(graph, {{0, 2, 2}, {1, 3, 3}}, 10) == std::vector<MotionRun>{{1, 100, 200}});
+}
