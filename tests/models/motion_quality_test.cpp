@@ -1,0 +1,78 @@
+#include "kinetome/models/motion_quality.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "features/small_body.h"
+
+using namespace kinetome;
+
+namespace {
+
+constexpr double rate = 100;
+constexpr int left = 2, right = 4;  // ankles of the small body
+
+/// All joints at one place but the left ankle: it stands for 100 frames, slides by 0.1 cm a frame
+/// for 50, swings for 50 and stands again for 50.
+MatrixF steps() {
+    MatrixF positions = MatrixF::Zero(250, 3 * small_body::skeleton().joint_count());
+    for (int i = 0; i < 250; ++i) {
+        positions(i, 3 * right) = float(i);  // never stands: 100 cm/s
+        positions(i, 3 * left) = float(0.1 * std::clamp(i - 99, 0, 50));
+        if (i >= 150 && i < 200) {
+            positions(i, 3 * left + 1) = float(10 * std::sin((i - 150) * 3.14159 / 50));
+            positions(i, 3 * left + 2) = float(i - 150);
+        }
+        if (i >= 200) positions(i, 3 * left + 2) = 50;
+    }
+    return positions;
+}
+
+}  // namespace
+
+TEST_CASE("a foot stands while it is low and slow, not while it swings or hangs in the air") {
+    const auto contacts = foot_contacts(small_body::skeleton(), steps(), rate);
+    REQUIRE(contacts.size() == 250);
+    for (size_t i = 0; i < 250; ++i) {
+        if (i > 145 && i < 205) continue;
+        CHECK(contacts[i][0]);
+    }
+    for (size_t i = 152; i < 198; ++i) CHECK_FALSE(contacts[i][0]);
+    for (size_t i = 0; i < 250; ++i) {
+        CHECK_FALSE(contacts[i][1]);
+        CHECK_FALSE(contacts[i][2]);  // the body has no toes
+    }
+}
+
+TEST_CASE("a floor that few noisy frames lie below is where the foot stands all the same") {
+    MatrixF positions = steps();
+    positions.col(3 * left + 1).array() += 30;
+    positions(10, 3 * left + 1) = -20;
+    const auto contacts = foot_contacts(small_body::skeleton(), positions, rate);
+    CHECK(contacts[60][0]);
+    CHECK_FALSE(contacts[9][0]);  // it comes to the noisy frame too fast
+}
+
+TEST_CASE("slide is what a standing foot goes along the floor, by the seconds it stands") {
+    const auto body = small_body::skeleton();
+    std::vector<FootContacts> contacts(250, FootContacts{});
+    for (size_t i = 0; i < 150; ++i) contacts[i][0] = true;
+    const FootSlide slide = foot_slide(body, steps(), contacts, rate);
+    CHECK(slide.distance == Approx(5).epsilon(1e-4));
+    CHECK(slide.seconds == Approx(1.49));
+    CHECK(slide.speed() == Approx(5 / 1.49).epsilon(1e-4));
+    CHECK(foot_slide(body, steps(), std::vector<FootContacts>(250), rate).speed() == 0);
+    CHECK_THROWS_AS(foot_slide(body, steps(), std::vector<FootContacts>(249), rate),
+                    std::invalid_argument);
+}
+
+TEST_CASE("a jump of one joint is the greatest speed and acceleration of all") {
+    MatrixF positions = MatrixF::Zero(20, 12);
+    for (int i = 0; i < 20; ++i) positions(i, 3) = float(i);  // 100 cm/s throughout
+    CHECK(joint_peaks(positions, rate).speed == Approx(100));
+    CHECK(joint_peaks(positions, rate).acceleration == Approx(0).margin(1e-9));
+    positions.bottomRows(10).col(7).setConstant(3);  // 3 cm from one frame to the next
+    CHECK(joint_peaks(positions, rate).speed == Approx(300));
+    CHECK(joint_peaks(positions, rate).acceleration == Approx(30000));
+    CHECK(joint_peaks(positions.topRows(1), rate).speed == 0);
+}
