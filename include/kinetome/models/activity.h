@@ -17,11 +17,10 @@ enum class ActivityMethod {
 
 /// Times are seconds, distances those of the features (cm).
 struct RegionGrowingOptions {
-    double radius = 64;          ///< longer edges of the graph do not count
-    double patience = 1.0 / 30;  ///< a region is complete after so long without new neighbours
-    double least_spacing = 1;    ///< cuts nearer to each other become one, halfway between …
-    double least_transition =
-        8.0 / 30;  ///< … a region's end and the next one's start: when so near
+    double radius = 64;           ///< longer edges of the graph do not count
+    double patience = 1.0 / 30;   ///< a region is complete after so long without new neighbours
+    double least_spacing = 1;     ///< cuts nearer to each other become one, halfway
+    double least_gap = 8.0 / 30;  ///< the same where a region ends and the next one starts
 };
 
 /// Times are seconds, distances those of the features (cm).
@@ -35,6 +34,7 @@ struct RepetitionOptions {
                                 ///< of one activity have
     double transition_ratio = 1.5;  ///< a frame of a transition is farther from the activity than …
     double transition_floor = 15;   ///< … this and so many times as far as the activity's median
+    double least_return = 2.0 / 3;  ///< frames nearer in time do not count for that
     double longest_side = 1;        ///< of a transition, before its boundary and after
     double least_transition = 0.2;  ///< shorter ones are left to their activities
 };
@@ -49,9 +49,10 @@ struct ActivityOptions {
 
 /// Cuts a take into activities and transitions, which follow each other without gaps. `features`
 /// are its n × d rows, `graph` is their neighbourhood graph, of a radius no less than the method's.
-/// Activities of one cluster are the same one; clusters are numbered as they appear. No segments
-/// for a take without frames. Throws std::invalid_argument when graph and features have not the
-/// same frames, or the rate is not positive.
+/// Activities of one cluster are the same one, clusters being numbered as they appear; with
+/// region_growing each is a cluster of its own (S3 §4 lets clusters of primitives tell what is the
+/// same). No segments for a take without frames. Throws std::invalid_argument when graph and
+/// features have not the same frames, or the rate is not positive.
 std::vector<Segment> find_activities(const NeighborGraph& graph, const MatrixFView& features,
                                      const ActivityOptions& options = {});
 
