@@ -9,6 +9,9 @@
 namespace kinetome {
 namespace {
 
+/// Of sums of lengths, in frames.
+constexpr double rounding = 1e-6;
+
 double smoothstep(double share) {
     return share * share * (3 - 2 * share);
 }
@@ -78,8 +81,17 @@ std::vector<TimedRun> on_time_line(std::span<const MotionRun> runs) {
     return timed;
 }
 
-/// Of sums of lengths, in frames.
-constexpr double rounding = 1e-6;
+/// Hands each frame of the whole over with the runs that are seen in it.
+template <class Visit>
+void for_each_frame(std::span<const MotionRun> runs, const Visit& visit) {
+    const auto timed = on_time_line(runs);
+    size_t begin = 0, end = 0;
+    for (double at = 0; at < timed.back().end - rounding; ++at) {
+        while (timed[begin].end <= at) ++begin;
+        while (end < timed.size() && timed[end].start <= at) ++end;
+        visit(at, std::span(timed).subspan(begin, end - begin));
+    }
+}
 
 void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
     if (runs.empty()) throw std::invalid_argument("there are no motions to join");
@@ -110,21 +122,28 @@ double frames_of_runs(std::span<const MotionRun> runs) {
 
 Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs) {
     check(clips, runs);
-    const auto timed = on_time_line(runs);
     const Clip& first = clips[static_cast<size_t>(runs.front().clip)];
     MotionBlend blend(first.skeleton, first.rate);
-    size_t begin = 0;  // of the runs that are not over
-    for (double at = 0; at < timed.back().end - rounding; ++at) {
-        while (timed[begin].end <= at) ++begin;
-        std::vector<MotionShare> shares;
-        for (size_t i = begin; i < timed.size() && timed[i].start <= at; ++i) {
-            const TimedRun& run = timed[i];
+    std::vector<MotionShare> shares;
+    for_each_frame(runs, [&](double at, std::span<const TimedRun> seen) {
+        shares.clear();
+        for (const TimedRun& run : seen) {
             shares.push_back({&clips[static_cast<size_t>(run.run.clip)], run.moment(at),
                               run.moment(at - 1), run.weight(at)});
         }
         blend.append(shares);
-    }
+    });
     return blend.clip();
+}
+
+std::vector<FrameSource> sources_of_runs(std::span<const MotionRun> runs) {
+    std::vector<FrameSource> sources;
+    for_each_frame(runs, [&](double at, std::span<const TimedRun> seen) {
+        const TimedRun& most = *std::ranges::max_element(
+            seen, {}, [=](const TimedRun& run) { return run.weight(at); });
+        sources.push_back({most.run.clip, std::llround(most.moment(at))});
+    });
+    return sources;
 }
 
 std::vector<MotionRun> runs_of_pieces(std::span<const MotionPiece> pieces, double fade_frames) {

@@ -76,3 +76,29 @@ TEST_CASE("a jump of one joint is the greatest speed and acceleration of all") {
     CHECK(joint_peaks(positions, rate).acceleration == Approx(30000));
     CHECK(joint_peaks(positions.topRows(1), rate).speed == 0);
 }
+
+TEST_CASE("a walk is measured beside the runs it is made of, its feet by where they stood there") {
+    using namespace small_body;
+    const auto body = std::make_shared<const Skeleton>(skeleton());
+    // A body that stands, and one that glides at 24 cm/s: slow enough to stand for the measure.
+    MatrixF still = MatrixF::Zero(200, skeleton().dof_count()), glide = still;
+    glide.col(root_z) = VectorF::LinSpaced(200, 0, 0.2f * 199);
+    const std::vector<Clip> clips = {{body, still, 120.0}, {body, glide, 120.0}};
+    const std::vector<MotionRun> runs = {{0, 0, 100, 0, 40}, {1, 60, 200, 40, 0}};
+    const Clip walk = play_runs(clips, runs);
+    REQUIRE(walk.frames() == 200);
+    const WalkQuality quality = measure_walk(clips, runs, walk);
+    // Both ankles stand all the time. In the takes 139 of 238 steps glide, in the walk 100 of 199
+    // and half of those in the fade, 120 in all.
+    CHECK(quality.slide_in_takes.speed() == Approx(24 * 139.0 / 238));
+    CHECK(quality.slide.seconds == Approx(2 * 199 / 120.0));
+    CHECK(quality.slide.speed() == Approx(24 * 120.0 / 199).epsilon(0.01));
+    CHECK(quality.peaks.speed == Approx(24).epsilon(1e-3));
+    CHECK(quality.peaks_in_takes.speed == Approx(24).epsilon(1e-3));
+    const auto sources = sources_of_runs(runs);
+    REQUIRE(sources.size() == 200);
+    CHECK(sources[79].clip == 0);
+    CHECK(sources[79].frame == 79);
+    CHECK(sources[81].clip == 1);
+    CHECK(sources[81].frame == 81);
+}

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "kinetome/base/matrix.h"
-#include "kinetome/formats/skeleton.h"
+#include "kinetome/formats/clip.h"
+#include "kinetome/models/motion_walk.h"
 
 namespace kinetome {
 
@@ -49,5 +50,16 @@ struct JointPeaks {
 };
 JointPeaks joint_peaks(const MatrixFView& positions, double rate);
 JointPeaks larger(const JointPeaks& one, const JointPeaks& other);
+
+/// A motion joined from runs of clips, beside those runs where they come from.
+struct WalkQuality {
+    FootSlide slide, slide_in_takes;
+    JointPeaks peaks, peaks_in_takes;
+};
+/// `walk` is what play_runs makes of the runs. Its feet are taken to stand where they do in the
+/// clip that is seen most: a foot that is dragged by a blend counts. Throws what foot_contacts
+/// throws.
+WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun> runs,
+                         const Clip& walk, const ContactOptions& options = {});
 
 }  // namespace kinetome

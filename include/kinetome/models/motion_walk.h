@@ -33,6 +33,14 @@ double frames_of_runs(std::span<const MotionRun> runs);
 /// that differ, runs of clips that are not there, runs shorter than their fades, or no run.
 Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs);
 
+/// The clip that is seen most in a frame of the whole, and the nearest of its frames.
+struct FrameSource {
+    int32_t clip = 0;
+    int64_t frame = 0;  ///< before the clip's first or past its last one where the pose is held
+};
+/// One a frame of what play_runs makes.
+std::vector<FrameSource> sources_of_runs(std::span<const MotionRun> runs);
+
 /// Pieces one after another, with fades of at most `fade_frames` about every seam: frames before
 /// the next piece's first and after the last piece's end are blended there, so that the sequence is
 /// as long as its pieces. A fade reaches at most to the middle of a piece; none where a piece goes
