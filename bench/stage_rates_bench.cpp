@@ -31,6 +31,7 @@
 #include "kinetome/stages/rates.h"
 #include "kinetome/stages/reindex.h"
 #include "kinetome/store/feature_store.h"
+#include "kinetome/store/neighbor_store.h"
 #include "kinetome/synthesis/corpus_generator.h"
 
 namespace {
@@ -142,6 +143,16 @@ MatrixF projected_rows(const fs::path& store) {
     return pca.project(rows);
 }
 
+/// Neighbours in a store's graphs.
+double edges_of(const Generation& generation) {
+    double edges = 0;
+    for (const Receipt* receipt : generation.ledger().of_stage("neighbors")) {
+        const NeighborShardReader shard(generation.open(receipt->file.file_name));
+        for (const NeighborShardClip& clip : shard.clips()) edges += double(clip.edges);
+    }
+    return edges;
+}
+
 double nanoseconds(double seconds, int64_t count) {
     return seconds * 1e9 / static_cast<double>(count);
 }
@@ -208,7 +219,13 @@ std::string processor() {
     return "unknown";
 }
 
-enum StageNumber : size_t { frames_stage, features_stage, pose_clusters_stage, strings_stage };
+enum StageNumber : size_t {
+    frames_stage,
+    features_stage,
+    pose_clusters_stage,
+    strings_stage,
+    neighbors_stage
+};
 
 Rates measure(const Options& options) {
     const Resources resources = granted_resources(options.threads, std::nullopt);
@@ -226,12 +243,11 @@ Rates measure(const Options& options) {
     const int64_t count = opened.generation.catalog().frames();
     const auto files = static_cast<double>(opened.generation.ledger().of_stage("frames").size());
 
-    const auto shard_rates = [&](StageNumber stage, double values_per_frame) {
+    const auto shard_rates = [&](StageNumber stage, double values) {
         ShardRates rates;
         rates.seconds_per_file = empty[stage].wall;
         rates.nanoseconds_per_value =
-            nanoseconds(std::max(0.0, one[stage].cpu - files * empty[stage].cpu), count) /
-            values_per_frame;
+            std::max(0.0, one[stage].cpu - files * empty[stage].cpu) * 1e9 / values;
         rates.serial_share = serial_share(one[stage].wall, all[stage].wall, resources.threads);
         return rates;
     };
@@ -241,8 +257,11 @@ Rates measure(const Options& options) {
     rates.version = opened.generation.ledger().version;
     rates.threads = resources.threads;
     const FeatureOptions features;
-    rates.frames = shard_rates(frames_stage, values_of_frames(shape));
-    rates.features = shard_rates(features_stage, values_of_features(shape, features, 120.0));
+    const auto frames = static_cast<double>(count);
+    rates.frames = shard_rates(frames_stage, frames * values_of_frames(shape));
+    rates.features =
+        shard_rates(features_stage, frames * values_of_features(shape, features, 120.0));
+    rates.neighbors = shard_rates(neighbors_stage, 2 * edges_of(opened.generation));
 
     const auto per_row = [&](StageNumber stage) {
         return nanoseconds(std::max(0.0, one[stage].cpu - empty[stage].cpu), count);

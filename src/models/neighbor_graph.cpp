@@ -125,6 +125,15 @@ NeighborGraph neighbor_graph(const MatrixFView& features, const KnnOptions& opti
     return builder.finish();
 }
 
+uint64_t neighbor_graph_bytes(int64_t frames, int64_t columns, const KnnOptions& options) {
+    constexpr uint64_t copies_of_features = 4;  // the rows, the index with its boxes
+    constexpr uint64_t copies_of_edges = 5;  // lists in parts and joined, the graph; as they grow
+    const auto edges = static_cast<uint64_t>(std::min(frames, options.neighbours));
+    return static_cast<uint64_t>(frames) *
+           (copies_of_features * static_cast<uint64_t>(columns) * sizeof(float) +
+            copies_of_edges * edges * (sizeof(int32_t) + sizeof(float)));
+}
+
 NeighborGraph within(const NeighborGraph& graph, double radius) {
     return filtered(graph, {0, graph.frames()},
                     [&](int32_t, float distance) { return double(distance) <= radius; });

@@ -76,6 +76,20 @@ int64_t ClipShape::frames_at(double other_rate) const {
     return std::max<int64_t>(1, std::llround(static_cast<double>(frames) * other_rate / rate));
 }
 
+double expected_edges(const ClipShape& clip, const ReindexOptions& options) {
+    // A take returns to a pose the more seldom, the longer it is: fitted to the takes of the CMU
+    // corpus at r = 72 cm.
+    constexpr double share_after_a_second = 1.1, fitted_radius = 72;
+    const NeighborOptions& asked = options.neighbors;
+    const auto frames = static_cast<double>(clip.frames_at(options.features.effector_rate));
+    const double seconds = frames / options.features.effector_rate;
+    const double share =
+        share_after_a_second / std::sqrt(seconds) * std::pow(asked.knn.radius / fitted_radius, 2);
+    const double within_radius = frames * std::min(share, 1.0);
+    const auto most = static_cast<double>(asked.knn.neighbours);
+    return frames * std::max(1.0, most * (1 - std::exp(-within_radius / most)));
+}
+
 int64_t CorpusShape::frames() const {
     int64_t total = 0;
     for (const ClipShape& clip : clips) total += clip.frames;

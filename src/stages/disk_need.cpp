@@ -57,6 +57,16 @@ uint64_t features_bytes(const ClassShape& shape, int64_t clips, int64_t pose_row
         .bytes();
 }
 
+/// NeighborShardWriter.
+uint64_t neighbors_bytes(int64_t clips, int64_t frames, int64_t edges) {
+    return Group()
+        .rows(1, {number})
+        .rows(clips, {number, name, number, number, number, number, number})
+        .rows(frames, {index})
+        .rows(edges, {index, value})
+        .bytes();
+}
+
 uint64_t mixture_bytes(const PartitionShape& partition) {
     return static_cast<uint64_t>(partition.most_clusters() * (partition.expected_components() + 2) *
                                  number);
@@ -90,10 +100,19 @@ uint64_t motion_strings_bytes(const PartitionShape& partition) {
 /// Clips and rows of one class in a shard.
 struct ClassRows {
     int64_t clips = 0, frames = 0, pose_rows = 0, effector_rows = 0;
+    double edges = 0;
 };
 
-uint64_t shard_bytes(bool features, const std::string& cut, const CorpusShape& corpus,
-                     const FeatureOptions& options) {
+uint64_t class_bytes(const std::string& stage, const ClassShape& shape, const ClassRows& rows) {
+    if (stage == "frames") return frames_bytes(shape, rows.clips, rows.frames);
+    if (stage == "features") {
+        return features_bytes(shape, rows.clips, rows.pose_rows, rows.effector_rows);
+    }
+    return neighbors_bytes(rows.clips, rows.effector_rows, std::llround(rows.edges));
+}
+
+uint64_t shard_bytes(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
+                     const ReindexOptions& options) {
     const auto shard = corpus.shards.find(cut);
     if (shard == corpus.shards.end()) return 0;
     std::map<size_t, ClassRows> classes;
@@ -102,14 +121,13 @@ uint64_t shard_bytes(bool features, const std::string& cut, const CorpusShape& c
         ClassRows& rows = classes[clip.clip_class];
         ++rows.clips;
         rows.frames += clip.frames;
-        rows.pose_rows += clip.frames_at(options.pose_rate);
-        rows.effector_rows += clip.frames_at(options.effector_rate);
+        rows.pose_rows += clip.frames_at(options.features.pose_rate);
+        rows.effector_rows += clip.frames_at(options.features.effector_rate);
+        rows.edges += expected_edges(clip, options);
     }
     uint64_t bytes = 0;
     for (const auto& [clip_class, rows] : classes) {
-        const ClassShape& shape = corpus.classes[clip_class];
-        bytes += features ? features_bytes(shape, rows.clips, rows.pose_rows, rows.effector_rows)
-                          : frames_bytes(shape, rows.clips, rows.frames);
+        bytes += class_bytes(stage, corpus.classes[clip_class], rows);
     }
     return bytes;
 }
@@ -172,8 +190,7 @@ DiskNeed texts(const RunPlan& plan) {
 
 uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
                         const ReindexOptions& options) {
-    if (stage == "frames") return shard_bytes(false, cut, corpus, options.features);
-    if (stage == "features") return shard_bytes(true, cut, corpus, options.features);
+    if (stage_named(stage).sharded) return shard_bytes(stage, cut, corpus, options);
     uint64_t bytes = 0;
     for (const PartitionShape& partition : partition_shapes(corpus, options)) {
         if (stage == "pose_clusters") {

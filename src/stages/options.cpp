@@ -112,6 +112,9 @@ constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
 constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ratio},
                                          std::pair{"bic", ClusterCountRule::bic}};
 
+constexpr std::array knn_engine_names = {std::pair{"blocks", KnnEngine::blocks},
+                                         std::pair{"flann", KnnEngine::flann}};
+
 /// One value as the option's text, from whatever TOML type it has.
 std::string toml_text(const std::string& origin, const std::string& name, const toml::node& node) {
     if (const auto value = node.value_exact<std::string>()) return *value;
@@ -141,6 +144,7 @@ void require(bool holds, const std::string& what) {
 std::vector<OptionRow> option_rows(ReindexOptions& o) {
     PoseClusterOptions& p = o.pose_clusters;
     MixtureOptions& m = p.mixture;
+    NeighborOptions& g = o.neighbors;
     return {
         number("amc-rate", "frames", o.frames.amc.rate,
                "frames a second of AMC takes, which do not state it"),
@@ -184,12 +188,20 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "longest submotion λ′, seconds"),
         number("tau", "motion_strings", o.motion_strings.tau,
                "distance below which letters are equal; 0: the median adjacent distance"),
+        number("radius", "neighbors", g.knn.radius, "frames no farther apart are neighbours, cm"),
+        number("neighbours", "neighbors", g.knn.neighbours,
+               "at most so many of each frame, itself among them, the nearest"),
+        number("stack-offset", "neighbors", g.stack_offset,
+               "seconds between a frame and those before and after that it is compared with"),
+        choice("knn-engine", "neighbors", g.engine, knn_engine_names,
+               "that searches neighbours; flann rounds"),
     };
 }
 
 ReindexOptions paper_options() {
     ReindexOptions options;
     options.partition.rule = PartitionRule::none;  // S1 clusters each database as a whole
+    options.neighbors.knn.radius = 64;             // S3 §5
     return options;
 }
 
@@ -273,6 +285,9 @@ void check_options(const ReindexOptions& o) {
     require(m.variance_floor > 0, "variance-floor must be above 0");
     require(o.motion_strings.longest_submotion > 0, "longest-submotion must be above 0");
     require(o.motion_strings.tau >= 0, "tau must not be negative");
+    require(o.neighbors.knn.radius > 0, "radius must be above 0");
+    require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
+    require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");
     try {
         const std::regex expression(o.partition.subject_from);
         require(o.partition.subject_from.empty() || expression.mark_count() >= 1,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clip_pipeline.h"
+#include "kinetome/models/neighbor_graph.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/stages/stage.h"
 #include "kinetome/stages/work_share.h"
@@ -18,16 +19,25 @@ uint64_t bytes_of(double values) {
     return static_cast<uint64_t>(values * sizeof(float));
 }
 
+/// A clip on its way.
+uint64_t clip_bytes(const std::string& stage, const ClipShape& clip, const ClassShape& shape,
+                    const ReindexOptions& options) {
+    if (stage == "neighbors") {
+        return neighbor_graph_bytes(clip.frames_at(options.features.effector_rate),
+                                    3 * effector_values, options.neighbors.knn);
+    }
+    const double frame = values_of_frames(shape);
+    const double feature = values_of_features(shape, options.features, clip.rate);
+    return static_cast<uint64_t>(clip.frames) *
+           bytes_of(stage == "frames" ? frame : frame + feature);
+}
+
 /// Clips on their way from reading to writing: the largest of the corpus at once, at worst.
 uint64_t pipeline_bytes(const std::string& stage, const CorpusShape& corpus,
                         const ReindexOptions& options, const Resources& resources) {
     std::vector<uint64_t> sizes, sources;
     for (const ClipShape& clip : corpus.clips) {
-        const ClassShape& shape = corpus.class_of(clip);
-        const double frame = values_of_frames(shape);
-        const double feature = values_of_features(shape, options.features, clip.rate);
-        sizes.push_back(static_cast<uint64_t>(clip.frames) *
-                        bytes_of(stage == "frames" ? frame : frame + feature));
+        sizes.push_back(clip_bytes(stage, clip, corpus.class_of(clip), options));
         sources.push_back(clip.source_bytes);
     }
     std::sort(sizes.rbegin(), sizes.rend());

@@ -81,7 +81,8 @@ class RatesFile {
     }
 
     Rates read() const {
-        require_known(table_, {"machine", "version", "threads", "frames", "features", "poses"});
+        require_known(
+            table_, {"machine", "version", "threads", "frames", "features", "poses", "neighbors"});
         Rates rates;
         rates.machine = table_["machine"].value_or(std::string());
         rates.version = table_["version"].value_or(std::string());
@@ -90,6 +91,7 @@ class RatesFile {
         rates.features = section<ShardRates>(table_, "features", shard_fields);
         rates.poses = section<PoseRates>(table_, "poses", pose_fields, more_pose_keys);
         rates.poses.by_clusters = mixtures();
+        rates.neighbors = section<ShardRates>(table_, "neighbors", shard_fields);
         return rates;
     }
 
@@ -198,6 +200,7 @@ std::string write_rates(const Rates& rates) {
                         quoted(rates.version), rates.threads);
     text += section_text("[frames]", rates.frames, shard_fields);
     text += section_text("[features]", rates.features, shard_fields);
+    text += section_text("[neighbors]", rates.neighbors, shard_fields);
     text += section_text("[poses]", rates.poses, pose_fields);
     for (const ClusterRates& one : rates.poses.by_clusters) {
         text += section_text("[[poses.mixture]]", one, cluster_fields);

@@ -22,6 +22,11 @@ seconds_per_file = 0.01237
 nanoseconds_per_value = 15.44
 serial_share = 0.5
 
+[neighbors]
+seconds_per_file = 0.006
+nanoseconds_per_value = 75.0
+serial_share = 0.1
+
 [poses]
 seconds_per_file = 0.004646
 moments_nanoseconds_per_row = 509.6

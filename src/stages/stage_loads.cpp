@@ -72,7 +72,20 @@ LoadItem strings_item(const PartitionShape& partition, const PoseRates& rates) {
 }
 
 const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
-    return stage == "frames" ? rates.frames : rates.features;
+    if (stage == "frames") return rates.frames;
+    return stage == "features" ? rates.features : rates.neighbors;
+}
+
+/// Numbers that a sharded stage writes of a clip.
+double values_of(const std::string& stage, const ClipShape& clip, const CorpusShape& corpus,
+                 const ReindexOptions& options) {
+    const ClassShape& shape = corpus.class_of(clip);
+    const auto frames = static_cast<double>(clip.frames);
+    if (stage == "frames") return frames * values_of_frames(shape);
+    if (stage == "features") {
+        return frames * values_of_features(shape, options.features, clip.rate);
+    }
+    return 2 * expected_edges(clip, options);
 }
 
 }  // namespace
@@ -86,12 +99,8 @@ LoadItem shard_item(const std::string& stage, const std::string& cut, const Corp
         item.pieces = std::max<int64_t>(1, static_cast<int64_t>(shard->second.size()));
         for (const size_t i : shard->second) {
             const ClipShape& clip = corpus.clips[i];
-            const ClassShape& shape = corpus.class_of(clip);
-            const double per_frame = stage == "frames"
-                                         ? values_of_frames(shape)
-                                         : values_of_features(shape, options.features, clip.rate);
             item.amount += clip.frames;
-            values += static_cast<double>(clip.frames) * per_frame;
+            values += values_of(stage, clip, corpus, options);
         }
     }
     const ShardRates& each = shard_rates(stage, rates);

@@ -32,6 +32,12 @@ const std::vector<StageRow>& stage_table() {
          .format_version = 1,
          .description = "letters, accessibility, τ and λ (S1 §3.2, §3.6)",
          .make = make_motion_strings},
+        {.name = "neighbors",
+         .inputs = {"features"},
+         .sharded = true,
+         .format_version = 1,
+         .description = "the neighbourhood graph of each take (S3 §3)",
+         .make = make_neighbors},
     };
     return table;
 }

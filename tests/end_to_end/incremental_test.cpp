@@ -53,14 +53,14 @@ Names beginning_with(const Names& names, const std::string& beginning) {
 
 /// Artifacts of a stage and of those that depend on it.
 Names from_stage_on(const StoreOnDisk& store, const std::string& stage) {
-    const std::vector<std::string> stages = {"frames-", "features-", "pose_clusters",
-                                             "motion_strings"};
-    Names names;
-    bool reached = false;
-    for (const std::string& one : stages) {
-        reached = reached || one.rfind(stage, 0) == 0;
-        if (reached) names.merge(store.artifacts(one));
-    }
+    const std::map<std::string, std::vector<std::string>> made_of = {
+        {"frames", {"features"}},
+        {"features", {"pose_clusters", "neighbors"}},
+        {"pose_clusters", {"motion_strings"}}};
+    Names names = store.artifacts(stage);
+    const auto next = made_of.find(stage);
+    if (next == made_of.end()) return names;
+    for (const std::string& one : next->second) names.merge(from_stage_on(store, one));
     return names;
 }
 
@@ -102,7 +102,8 @@ TEST_CASE("a new take alters one shard and what is made of all of them", "[incre
     const Names altered = replaced(before, after);
     CHECK(beginning_with(altered, "frames-").size() == 1);
     CHECK(beginning_with(altered, "features-").size() == 1);
-    CHECK(altered.size() == 4);
+    CHECK(beginning_with(altered, "neighbors-").size() == 1);
+    CHECK(altered.size() == 5);
     CHECK(names_of(after) == names_of(before));
     const RunLog log(added.errors);
     CHECK(log.names_made() == altered);
@@ -163,6 +164,7 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
              Change{"--tau", "5.5", "motion_strings", "option tau was 0, is 5.5"},
              Change{"--longest-submotion", "1", "motion_strings",
                     "option longest-submotion was 1.6666666666666667, is 1"},
+             Change{"--radius", "60", "neighbors", "option radius was 72, is 60"},
              Change{"--clusters", "61", "pose_clusters", "option clusters was 60, is 61"},
              Change{"--seed", "9", "pose_clusters", "option seed was"},
              Change{"--partition", "subject", "pose_clusters",
@@ -203,7 +205,9 @@ TEST_CASE("the option --only makes the stages it names, and says what is left ou
     CHECK(contains(too_far.errors, "motion_strings needs pose_clusters.h5"));
 
     const RunLog rest(require_program(reindex(corpus, store.path())).errors);
-    CHECK(rest.names_made() == Names{"motion_strings.h5", "pose_clusters.h5"});
+    Names left = store.artifacts("neighbors-");
+    left.merge(Names{"motion_strings.h5", "pose_clusters.h5"});
+    CHECK(rest.names_made() == left);
     require_program(reindex(corpus, fresh.path()));
     CHECK(store.digests() == fresh.digests());
 }
@@ -222,7 +226,8 @@ TEST_CASE("a damaged artifact is found out by verify and made again by reindex",
     const std::string digests = indexed.store.digests();
     for (const std::string& name :
          {*indexed.store.artifacts("frames-").begin(),
-          *indexed.store.artifacts("features-").begin(), std::string("pose_clusters.h5")}) {
+          *indexed.store.artifacts("features-").begin(), std::string("pose_clusters.h5"),
+          *indexed.store.artifacts("neighbors-").begin()}) {
         INFO(name);
         const fs::path file = indexed.store.file(name);
         flip_bit(file, fs::file_size(file) / 2);

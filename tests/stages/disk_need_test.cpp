@@ -63,7 +63,9 @@ void check_bytes(const fs::path& corpus, const fs::path& store, const ReindexOpt
         INFO(plan.work[i].file_name << ": expected " << expected[i] << " bytes, written "
                                     << receipt->file.bytes);
         const auto written = static_cast<double>(receipt->file.bytes);
-        CHECK(static_cast<double>(expected[i]) == Approx(written).epsilon(0.25));
+        // How often takes return to a pose is not known before they are read.
+        const double known_to = plan.work[i].stage->name == "neighbors" ? 0.6 : 0.25;
+        CHECK(static_cast<double>(expected[i]) == Approx(written).epsilon(known_to));
         whole += written;
     }
     for (const auto& entry : fs::recursive_directory_iterator(store)) {

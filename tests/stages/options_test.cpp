@@ -58,7 +58,8 @@ TEST_CASE("values that make no sense are refused before a run begins") {
     for (const char* toml :
          {"shard-frames = 8191", "pose-rate = 0", "variance-share = 1.5", "least-clusters = 9000",
           "cluster-rule = 'bic'", "compression = 'zip'", "subject-from = '('",
-          "subject-from = 'no group'", "min-gain = -1", "joint-map = '/no/such/file'"}) {
+          "subject-from = 'no group'", "min-gain = -1", "joint-map = '/no/such/file'", "radius = 0",
+          "neighbours = 0", "stack-offset = -0.1", "knn-engine = 'ann'"}) {
         refused(toml);
     }
     CHECK_THROWS_AS(parsed("pose-rate = inf"), UsageError);

@@ -42,6 +42,10 @@ class NeighborGraph {
 NeighborGraph neighbor_graph(const MatrixFView& features, const KnnOptions& options,
                              KnnEngine engine, int threads);
 
+/// Memory that building the graph of n × columns features takes at most, itself and the features
+/// counted.
+uint64_t neighbor_graph_bytes(int64_t frames, int64_t columns, const KnnOptions& options);
+
 /// The edges no longer than `radius`: the graph of that radius, since lists hold the nearest.
 NeighborGraph within(const NeighborGraph& graph, double radius);
 

@@ -49,6 +49,10 @@ struct CorpusShape {
     int64_t frames() const;
 };
 
+/// Neighbours that all frames of a take have together, as long as none is searched. How many poses
+/// of a take are alike differs from take to take by half as much again or less.
+double expected_edges(const ClipShape& clip, const ReindexOptions& options);
+
 /// What the takes claim; those that the survey quarantined, or whose skeleton cannot be parsed, are
 /// left out. Skeleton files are read, takes are not.
 CorpusShape corpus_shape(const Survey& survey, const std::vector<Shard>& shards,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinetome/formats/asf_amc.h"
+#include "kinetome/math/knn.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/subject_partition.h"
 
@@ -39,12 +40,19 @@ struct StringOptions {
     double tau = 0;                            ///< τ of Eq. 2; 0: the median adjacent distance
 };
 
+struct NeighborOptions {
+    KnnOptions knn;                        ///< r in cm (S3: 64) and k
+    KnnEngine engine = KnnEngine::blocks;  ///< that searches
+    double stack_offset = 1.0 / 30.0;      ///< seconds between the poses stacked in one row
+};
+
 struct ReindexOptions {
     FrameOptions frames;
     FeatureOptions features;
     PartitionOptions partition;
     PoseClusterOptions pose_clusters;
     StringOptions motion_strings;
+    NeighborOptions neighbors;
 };
 
 /// Every option at the paper's value, where the default departs from it (docs/methods.md).

@@ -41,6 +41,7 @@ struct Rates {
     ShardRates frames;
     ShardRates features;
     PoseRates poses;
+    ShardRates neighbors;  ///< a neighbour is two values
 };
 
 /// For any κ: between the logarithms of those measured, beyond them in proportion to κ.
