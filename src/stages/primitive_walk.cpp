@@ -77,21 +77,30 @@ void require_path(const PrimitiveGraph& primitives, const WalkOptions& options,
                     listed(names_of(primitives, there))));
 }
 
-/// What most of the items have; of equally frequent ones the lowest.
-template <class Key>
-Key most_frequent(const std::map<Key, int64_t>& counts) {
-    return std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; })->first;
-}
-
 bool is_named(const ClipPrimitive& primitive, const std::string& name) {
     return primitive.label == name || std::to_string(primitive.cluster) == name;
 }
 
-MotionPiece at_rate(const ClipPrimitive& primitive, int32_t clip, double factor) {
-    const auto scaled = [&](int64_t frame) {
-        return std::llround(static_cast<double>(frame) * factor);
-    };
-    return {clip, scaled(primitive.first), scaled(primitive.end)};
+/// Those of the class of skeletons that most of the named ones have.
+std::vector<ClipPrimitive> of_one_class(const std::vector<ClipPrimitive>& primitives,
+                                        const ClipSource& source, const std::string& from) {
+    std::map<std::string, std::string> class_of;  // by clip
+    for (const ClipPrimitive& primitive : primitives) {
+        std::string& clip_class = class_of[primitive.clip];
+        if (clip_class.empty()) clip_class = source.kind(primitive.clip).clip_class;
+    }
+    std::map<std::string, int64_t> counts;
+    for (const ClipPrimitive& primitive : primitives) {
+        if (from.empty() || is_named(primitive, from)) ++counts[class_of[primitive.clip]];
+    }
+    if (counts.empty()) return primitives;  // none is named: whoever looks for them will say so
+    const auto most =
+        std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
+    std::vector<ClipPrimitive> kept;
+    for (const ClipPrimitive& primitive : primitives) {
+        if (class_of[primitive.clip] == most->first) kept.push_back(primitive);
+    }
+    return kept;
 }
 
 void check(const WalkOptions& options) {
@@ -104,16 +113,17 @@ void check(const WalkOptions& options) {
 /// The clips of a walk on one body, at one rate, numbered as they come in.
 class ClipsOfOneBody {
   public:
-    ClipsOfOneBody(const ClassGraph& graph, const ClipSource& source, const WalkOptions& options,
+    ClipsOfOneBody(const StoredGraph& graph, const ClipSource& source, const WalkOptions& options,
                    const std::vector<MotionRun>& runs)
         : body_(options.body) {
         if (body_.empty()) body_ = graph.clips[static_cast<size_t>(runs.front().clip)];
         const std::string body_class = source.kind(body_).clip_class;
-        if (body_class != graph.clip_class) {
+        const std::string clip_class = source.kind(graph.clips.front()).clip_class;
+        if (body_class != clip_class) {
             throw UsageError(
                 fmt::format("--body {}: it is of class {}, the walk's primitives of "
                             "class {}; name a clip of that class",
-                            quote_for_message(body_), body_class, graph.clip_class));
+                            quote_for_message(body_), body_class, clip_class));
         }
         const auto skeleton = source.read(body_).skeleton;
         std::map<int32_t, int32_t> numbers;
@@ -141,74 +151,27 @@ class ClipsOfOneBody {
 
 }  // namespace
 
-ClassGraph class_graph(const std::vector<ClipPrimitive>& primitives, const ClipSource& source,
-                       const WalkOptions& options) {
-    std::map<std::string, ClipKind> kinds;
-    for (const ClipPrimitive& primitive : primitives) {
-        if (!kinds.contains(primitive.clip)) kinds[primitive.clip] = source.kind(primitive.clip);
-    }
-    std::map<std::string, int64_t> classes;
-    for (const ClipPrimitive& primitive : primitives) {
-        if (options.from.empty() || is_named(primitive, options.from)) {
-            ++classes[kinds[primitive.clip].clip_class];
-        }
-    }
-    if (primitives.empty()) {
-        throw UsageError("the store has no primitives; kinetome reindex makes them");
-    }
-    if (classes.empty()) {
-        throw UsageError(
-            fmt::format("--from {}: no primitive has this label or cluster; kinetome "
-                        "export STORE primitives lists them",
-                        quote_for_message(options.from)));
-    }
-    ClassGraph result;
-    result.clip_class = most_frequent(classes);
-    std::map<double, int64_t> rates;
-    std::map<std::string, int32_t> numbers;
-    for (const ClipPrimitive& primitive : primitives) {
-        const ClipKind& kind = kinds[primitive.clip];
-        if (kind.clip_class != result.clip_class) continue;
-        ++rates[kind.rate];
-        result.pieces.push_back(primitive);
-        if (numbers.try_emplace(primitive.clip, static_cast<int32_t>(result.clips.size())).second) {
-            result.clips.push_back(primitive.clip);
-        }
-    }
-    result.rate = most_frequent(rates);
-    std::vector<MotionPiece> pieces;
-    std::vector<int32_t> clusters;
-    std::vector<std::string> labels;
-    for (const ClipPrimitive& primitive : result.pieces) {
-        pieces.push_back(
-            at_rate(primitive, numbers[primitive.clip], result.rate / kinds[primitive.clip].rate));
-        clusters.push_back(primitive.cluster);
-        labels.push_back(primitive.label);
-    }
-    result.primitives = primitive_graph(std::move(pieces), clusters, labels,
-                                        std::llround(options.longest_gap * result.rate));
-    return result;
-}
-
-PrimitiveWalk walk_primitives(const ClassGraph& graph, const ClipSource& source,
-                              const WalkOptions& options) {
+PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
+                              const ClipSource& source, const WalkOptions& options) {
     check(options);
-    const auto from = require_nodes(graph.primitives, "--from", options.from);
-    const auto to = require_nodes(graph.primitives, "--to", options.to);
-    require_path(graph.primitives, options, from, to);
+    const StoredGraph graph =
+        stored_graph(of_one_class(primitives, source, options.from), source, options.longest_gap);
+    const MotionGraph& pieces = graph.nodes.graph;
+    const auto from = require_nodes(graph.nodes, "--from", options.from);
+    const auto to = require_nodes(graph.nodes, "--to", options.to);
+    require_path(graph.nodes, options, from, to);
     const GraphWalk way = random_walk(
-        graph.primitives.graph,
+        pieces,
         {.frames = options.seconds * graph.rate, .seed = options.seed, .from = from, .to = to});
-    const ClipsOfOneBody played(
-        graph, source, options,
-        runs_of_walk(graph.primitives.graph, way.steps, options.fade_seconds * graph.rate));
+    const ClipsOfOneBody played(graph, source, options,
+                                runs_of_walk(pieces, way.steps, options.fade_seconds * graph.rate));
     PrimitiveWalk walk{.motion = play_runs(played.clips(), played.runs()),
                        .body = played.body(),
                        .ended_early = way.ended_early};
     walk.quality = measure_walk(played.clips(), played.runs(), walk.motion);
     for (const WalkStep& step : way.steps) {
-        walk.path.push_back(graph.pieces[static_cast<size_t>(step.entry)]);
-        walk.nodes.push_back(graph.primitives.name_of(step.node));
+        walk.path.push_back(graph.primitives[static_cast<size_t>(step.entry)]);
+        walk.nodes.push_back(graph.nodes.name_of(step.node));
     }
     const int64_t wanted = std::llround(options.seconds * graph.rate);
     if (to.empty() && walk.motion.frames() > wanted) {

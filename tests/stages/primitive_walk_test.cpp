@@ -43,7 +43,7 @@ struct Corpus {
                 find};
     }
     PrimitiveWalk walk(const WalkOptions& options) const {
-        return walk_primitives(class_graph(primitives, source(), options), source(), options);
+        return walk_primitives(primitives, source(), options);
     }
 };
 
@@ -112,7 +112,7 @@ TEST_CASE("what a walk cannot do is told with what it can") {
     CHECK_THROWS_WITH(
         corpus().walk({.to = "swimming"}),
         Catch::Contains("swimming") && Catch::Contains(corpus().primitives.front().label));
-    CHECK_THROWS_WITH(class_graph({}, corpus().source(), {}), Catch::Contains("no primitives"));
+    CHECK_THROWS_WITH(walk_primitives({}, corpus().source(), {}), Catch::Contains("no primitives"));
 
     // Two islands: nothing follows b but b.
     const std::string clip = corpus().clips.begin()->first;
@@ -121,8 +121,7 @@ TEST_CASE("what a walk cannot do is told with what it can") {
                                                 {clip, 900, 950, 1, "b"},
                                                 {clip, 950, 999, 1, "b"}};
     const auto walk_islands = [&](const WalkOptions& options) {
-        const auto source = corpus().source();
-        return walk_primitives(class_graph(islands, source, options), source, options);
+        return walk_primitives(islands, corpus().source(), options);
     };
     CHECK_THROWS_WITH(walk_islands({.from = "b", .to = "a"}),
                       Catch::Contains("no path from 'b' to 'a'") && Catch::Contains("to 'b' only"));
@@ -134,9 +133,9 @@ TEST_CASE("clips of another rate are played at the rate that most primitives hav
     const std::string slow = mixed.primitives.back().clip;
     Clip& clip = mixed.clips.at(slow);
     clip.rate = 60;  // its frames, played at half the speed
-    const auto graph = class_graph(mixed.primitives, mixed.source(), {});
+    const auto graph = stored_graph(mixed.primitives, mixed.source(), 2);
     CHECK(graph.rate == 120);
-    const auto piece = graph.primitives.graph.pieces().back();
+    const auto piece = graph.nodes.graph.pieces().back();
     CHECK(piece.first == 2 * mixed.primitives.back().first);
     CHECK(piece.end == 2 * mixed.primitives.back().end);
     CHECK(mixed.walk({.seconds = 5}).motion.rate == 120);

@@ -1,0 +1,58 @@
+// The graph of the primitives of a store (S3 §6.2).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kinetome/formats/clip.h"
+#include "kinetome/models/primitive_graph.h"
+
+namespace kinetome {
+
+/// A primitive as a walk needs it; frames at the source's rate, end exclusive.
+struct ClipPrimitive {
+    std::string clip;
+    int64_t first = 0, end = 0;
+    int32_t cluster = -1;    ///< -1: like no other
+    std::string label = {};  ///< "": not known
+
+    bool operator==(const ClipPrimitive&) const = default;
+};
+
+/// What is known of a clip before it is read.
+struct ClipKind {
+    std::string clip_class;  ///< of its skeleton
+    double rate = 120;       ///< frames a second
+};
+
+/// Where clips come from; both throw when there is no clip of that name.
+struct ClipSource {
+    std::function<ClipKind(const std::string& clip)> kind;
+    std::function<Clip(const std::string& clip)> read;
+};
+
+struct StoredGraph {
+    std::vector<ClipPrimitive> primitives;  ///< pieces of the graph, at their sources' rates
+    PrimitiveGraph nodes;
+    std::vector<std::string> clips;  ///< by number in the graph
+    double rate = 0;                 ///< frames a second of the graph's pieces: of most primitives
+};
+
+/// `longest_gap`: seconds between two primitives of which one follows the other. Throws what
+/// source.kind does, and UsageError when there are no primitives.
+StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
+                         double longest_gap);
+
+enum class GraphFormat { csv, json, dot };
+/// Throws UsageError for another name.
+GraphFormat parse_graph_format(std::string_view name);
+
+/// The adjacency of its nodes, by node, and all that stands for it. CSV: a line a succession of two
+/// primitives, `from_node,to_node,from_cluster,to_cluster,from_label,to_label,clip,from_first,
+/// from_end,to_first,to_end`; JSON: nodes with their primitives and strong components, edges with
+/// their numbers of successions; DOT: the same as a picture. Frames at the sources' rates.
+std::string write_graph(const StoredGraph& graph, GraphFormat format);
+
+}  // namespace kinetome
