@@ -63,67 +63,87 @@ std::vector<FramesByClass> count_frames(const TruthTimeline& truth,
     return counts;
 }
 
-std::vector<FramesByClass> counts_of_clusters(std::span<const Segment> segments,
-                                              const std::vector<FramesByClass>& counts) {
+std::map<int32_t, FramesByClass> counts_of_clusters(std::span<const Segment> segments,
+                                                    const std::vector<FramesByClass>& counts) {
     std::map<int32_t, FramesByClass> clusters;
     for (size_t s = 0; s < segments.size(); ++s) {
         if (segments[s].kind == SegmentKind::transition) continue;
         const auto [found, is_new] = clusters.try_emplace(segments[s].cluster, counts[s]);
         if (!is_new) found->second += counts[s];
     }
-    std::vector<FramesByClass> in_order;
-    for (auto& [cluster, frames] : clusters) in_order.push_back(std::move(frames));
-    return in_order;
+    return clusters;
 }
 
 double share(int64_t part, int64_t whole) {
     return whole > 0 ? double(part) / double(whole) : 0.0;
 }
 
-/// Frames that have the class given to their cluster, at best.
-template <class Frames>
-int64_t frames_of_given_class(const std::vector<FramesByClass>& clusters, const Frames& frames_of) {
-    if (clusters.empty()) return 0;
-    MatrixD agreeing(clusters.size(), clusters.front().outside_zones.size());
-    for (size_t c = 0; c < clusters.size(); ++c) {
-        agreeing.row(static_cast<int64_t>(c)) =
-            frames_of(clusters[c]).template cast<double>().matrix().transpose();
+/// Frames of a cluster by class, as a scored figure counts them.
+using Counted = ClassCounts (*)(const FramesByClass&);
+
+ClassCounts all_frames(const FramesByClass& frames) {
+    return frames.outside_zones + frames.inside_zones;
+}
+
+ClassCounts certain_frames(const FramesByClass& frames) {
+    return frames.outside_zones;
+}
+
+/// The class given to each cluster, one to one, such that most of the counted frames agree.
+std::vector<int32_t> give_classes(const std::map<int32_t, FramesByClass>& clusters,
+                                  const Counted& counted) {
+    if (clusters.empty()) return {};
+    const auto size = static_cast<Eigen::Index>(clusters.size());
+    MatrixD agreeing(size, clusters.begin()->second.outside_zones.size());
+    Eigen::Index row = 0;
+    for (const auto& [cluster, frames] : clusters) {
+        agreeing.row(row++) = counted(frames).cast<double>().matrix().transpose();
     }
-    const std::vector<int32_t> given = best_assignment(agreeing);
+    return best_assignment(agreeing);
+}
+
+int64_t frames_of_given_class(const std::map<int32_t, FramesByClass>& clusters,
+                              const Counted& counted) {
+    const std::vector<int32_t> given = give_classes(clusters, counted);
     int64_t right = 0;
-    for (size_t c = 0; c < clusters.size(); ++c) {
-        if (given[c] >= 0) right += frames_of(clusters[c])[given[c]];
+    auto its_class = given.begin();
+    for (const auto& [cluster, frames] : clusters) {
+        if (*its_class >= 0) right += counted(frames)[*its_class];
+        ++its_class;
     }
     return right;
 }
 
-/// Between each activity and the next; twice the frame, so that the middle of a transition is a
-/// whole number.
-std::vector<int64_t> doubled_boundaries(std::span<const Segment> segments) {
-    std::vector<int64_t> boundaries;
+/// Between each activity and the next: a transition, or a place without frames.
+std::vector<RowRange> boundaries_of(std::span<const Segment> segments) {
+    std::vector<RowRange> boundaries;
     const Segment* before = nullptr;
     for (const Segment& segment : segments) {
         if (segment.kind == SegmentKind::transition) continue;
-        if (before) boundaries.push_back(before->frames.end + segment.frames.first);
+        if (before) boundaries.push_back({before->frames.end, segment.frames.first});
         before = &segment;
     }
     return boundaries;
 }
 
-/// Zones and boundaries ascend, so taking the earliest boundary for each zone finds most.
-int64_t zones_found(const TruthTimeline& truth, const std::vector<int64_t>& boundaries,
+/// Both ascend in their beginnings and in their ends, so that taking the first that fits finds
+/// most.
+int64_t zones_found(std::span<const RowRange> zones, std::span<const RowRange> boundaries,
                     double tolerance) {
     int64_t found = 0;
-    auto next = boundaries.begin();
-    for (const RowRange& zone : truth.zones) {
-        const auto is_before = [&](int64_t doubled) {
-            return double(doubled) < 2 * (double(zone.first) - tolerance);
-        };
-        next = std::find_if_not(next, boundaries.end(), is_before);
-        if (next == boundaries.end()) break;
-        if (double(*next) > 2 * (double(zone.end) + tolerance)) continue;
-        ++found;
-        ++next;
+    size_t zone = 0, boundary = 0;
+    while (zone < zones.size() && boundary < boundaries.size()) {
+        const RowRange& allowed = zones[zone];
+        const RowRange& set = boundaries[boundary];
+        if (double(set.end) < double(allowed.first) - tolerance) {
+            ++boundary;
+        } else if (double(set.first) > double(allowed.end) + tolerance) {
+            ++zone;
+        } else {
+            ++found;
+            ++zone;
+            ++boundary;
+        }
     }
     return found;
 }
@@ -166,26 +186,22 @@ void score_frames(std::span<const Segment> segments, const std::vector<FramesByC
     score.purity = share(pure, certain_in_activities);
 }
 
-void score_clusters(const std::vector<FramesByClass>& clusters, int64_t frames,
-                    int64_t certain_frames, SegmentationScore& score) {
+void score_clusters(const std::map<int32_t, FramesByClass>& clusters, int64_t frames,
+                    int64_t certain, SegmentationScore& score) {
     int64_t pure = 0, certain_in_activities = 0;
-    for (const FramesByClass& cluster : clusters) {
-        pure += cluster.of_own_class();
-        certain_in_activities += cluster.certain();
+    for (const auto& [cluster, of_cluster] : clusters) {
+        pure += of_cluster.of_own_class();
+        certain_in_activities += of_cluster.certain();
     }
     score.cluster_purity = share(pure, certain_in_activities);
-    const auto all = [](const FramesByClass& c) -> ClassCounts {
-        return c.outside_zones + c.inside_zones;
-    };
-    const auto certain = [](const FramesByClass& c) { return c.outside_zones; };
-    score.hungarian = share(frames_of_given_class(clusters, all), frames);
-    score.hungarian_without_zones = share(frames_of_given_class(clusters, certain), certain_frames);
+    score.hungarian = share(frames_of_given_class(clusters, all_frames), frames);
+    score.hungarian_without_zones = share(frames_of_given_class(clusters, certain_frames), certain);
 }
 
 void score_boundaries(const TruthTimeline& truth, std::span<const Segment> segments,
                       double tolerance, SegmentationScore& score) {
-    const std::vector<int64_t> boundaries = doubled_boundaries(segments);
-    const int64_t found = zones_found(truth, boundaries, tolerance);
+    const std::vector<RowRange> boundaries = boundaries_of(segments);
+    const int64_t found = zones_found(truth.zones, boundaries, tolerance);
     const auto set = static_cast<int64_t>(boundaries.size());
     const auto true_ones = static_cast<int64_t>(truth.zones.size());
     score.boundary_precision = set > 0 ? share(found, set) : 1.0;
@@ -200,7 +216,7 @@ SegmentationScore score_segments(const TruthTimeline& truth, std::span<const Seg
     SegmentationScore score;
     if (segments.empty()) return score;
     const std::vector<FramesByClass> counts = count_frames(truth, segments);
-    const std::vector<FramesByClass> clusters = counts_of_clusters(segments, counts);
+    const auto clusters = counts_of_clusters(segments, counts);
     int64_t certain = 0;
     for (const FramesByClass& segment : counts) certain += segment.certain();
     score.counts = count_segments(truth, segments, clusters.size());
@@ -208,6 +224,20 @@ SegmentationScore score_segments(const TruthTimeline& truth, std::span<const Seg
     score_clusters(clusters, truth.frames(), certain, score);
     score_boundaries(truth, segments, options.boundary_tolerance * options.rate, score);
     return score;
+}
+
+std::vector<std::pair<int32_t, int32_t>> classes_of_clusters(const TruthTimeline& truth,
+                                                             std::span<const Segment> segments) {
+    require_cover(truth, segments);
+    const auto clusters = counts_of_clusters(segments, count_frames(truth, segments));
+    const std::vector<int32_t> given = give_classes(clusters, certain_frames);
+    std::vector<std::pair<int32_t, int32_t>> classes;
+    for (const auto& [cluster, frames] : clusters) {
+        const int32_t its_class = given[classes.size()];
+        const bool agrees = its_class >= 0 && frames.outside_zones[its_class] > 0;
+        classes.emplace_back(cluster, agrees ? its_class : -1);
+    }
+    return classes;
 }
 
 SegmentationScore average(std::span<const SegmentationScore> scores) {

@@ -101,18 +101,23 @@ TEST_CASE("a boundary is found in its zone and as far from it as is tolerated") 
     CHECK(with_boundaries(32, 76, 3).boundary_recall == 0.0);
 }
 
-TEST_CASE("a zone counts one boundary, a transition sets one in its middle") {
+TEST_CASE("a zone counts one boundary, a transition is one where it meets a zone") {
     const SegmentationScore doubled = toy_score(
         {activity(0, 38, 0), activity(38, 42, 1), activity(42, 70, 2), activity(70, 100, 0)});
     CHECK(doubled.boundary_recall == 1.0);
     CHECK(doubled.boundary_precision == Approx(2 / 3.0));
 
-    const SegmentationScore wide = toy_score({{{0, 5}, transition},  // at the take's end: none
-                                              activity(5, 30, 0),
-                                              {{30, 57}, transition},  // middle 43.5
-                                              activity(57, 100, 1)});
-    CHECK(wide.boundary_precision == 1.0);
-    CHECK(wide.boundary_recall == 0.5);
+    const auto with_transition = [](int64_t first, int64_t end) {
+        return toy_score({{{0, 5}, transition},  // at the take's end: no boundary
+                          activity(5, first, 0),
+                          {{first, end}, transition},
+                          activity(end, 100, 1)});
+    };
+    CHECK(with_transition(30, 36).boundary_recall == 0.5);
+    CHECK(with_transition(44, 60).boundary_precision == 1.0);
+    CHECK(with_transition(30, 35).boundary_recall == 0.0);
+    CHECK(with_transition(45, 60).boundary_precision == 0.0);
+    CHECK(with_transition(30, 90).boundary_recall == 0.5);  // one transition, one zone
 }
 
 TEST_CASE("a boundary near two zones serves the one that no other can") {

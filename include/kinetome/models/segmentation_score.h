@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "kinetome/models/segment.h"
 #include "kinetome/models/truth_timeline.h"
@@ -39,8 +41,8 @@ struct SegmentationScore {
     /// the way that makes most frames right; frames of transitions are wrong.
     double hungarian = 0;
     double hungarian_without_zones = 0;  ///< as hungarian, of the frames outside zones
-    /// Boundaries between two activities (the middle of a transition between them) that lie in a
-    /// zone or near it, each zone taken once; 1 where no boundary was set.
+    /// Boundaries between two activities that lie in a zone or near it, each zone taken once; of a
+    /// transition between them one end suffices. 1 where no boundary was set.
     double boundary_precision = 0;
     double boundary_recall = 0;  ///< zones that a boundary lies in or near; 1 where there is none
     SegmentationCounts counts;
@@ -55,6 +57,12 @@ struct SegmentationScoreOptions {
 /// other from frame 0 to the truth's end, and activities have clusters.
 SegmentationScore score_segments(const TruthTimeline& truth, std::span<const Segment> segments,
                                  const SegmentationScoreOptions& options = {});
+
+/// The class given to each cluster of the segments, clusters in ascending order: no class to two,
+/// such that most frames outside zones have the class of their cluster; -1 where none is left that
+/// any of the cluster's frames have.
+std::vector<std::pair<int32_t, int32_t>> classes_of_clusters(const TruthTimeline& truth,
+                                                             std::span<const Segment> segments);
 
 /// The mean of the shares and the sum of the counts; of none, zeros.
 SegmentationScore average(std::span<const SegmentationScore> scores);

@@ -1,0 +1,63 @@
+// Annotations and segments as rows of a timeline.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "kinetome/models/segmentation_score.h"
+#include "kinetome/report/timeline_svg.h"
+
+namespace kinetome {
+namespace {
+
+struct Look {
+    int32_t colour;
+    std::string name;
+};
+
+std::map<int32_t, Look> looks_of_clusters(const TruthTimeline& truth,
+                                          std::span<const Segment> segments) {
+    std::map<int32_t, Look> looks;
+    auto free_colour = static_cast<int32_t>(truth.classes.size());
+    for (const auto& [cluster, its_class] : classes_of_clusters(truth, segments)) {
+        if (its_class >= 0) {
+            looks[cluster] = {its_class, truth.classes[static_cast<size_t>(its_class)]};
+        } else {
+            looks[cluster] = {free_colour++, fmt::format("#{}", cluster)};
+        }
+    }
+    return looks;
+}
+
+}  // namespace
+
+TimelineRow truth_row(const TruthTimeline& truth) {
+    TimelineRow row{"annotation", {}, truth.zones, {}};
+    for (const TrueActivity& activity : truth.activities) {
+        row.bars.push_back(
+            {activity.frames, activity.label, truth.classes[static_cast<size_t>(activity.label)]});
+    }
+    return row;
+}
+
+TimelineRow segment_row(const std::string& name, std::span<const Segment> segments,
+                        std::span<const RowRange> primitives, const TruthTimeline& truth) {
+    const auto looks = looks_of_clusters(truth, segments);
+    TimelineRow row{name, {}, {}, {}};
+    for (const Segment& segment : segments) {
+        if (segment.kind == SegmentKind::transition) {
+            row.bars.push_back({segment.frames, std::nullopt, "transition"});
+            continue;
+        }
+        const Look& look = looks.at(segment.cluster);
+        row.bars.push_back({segment.frames, look.colour, look.name});
+        for (const RowRange& primitive : primitives) {
+            if (segment.frames.first < primitive.first && primitive.first < segment.frames.end) {
+                row.ticks.push_back(primitive.first);
+            }
+        }
+    }
+    return row;
+}
+
+}  // namespace kinetome
