@@ -1,7 +1,9 @@
 #include "kinetome/features/effectors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "clip_rows.h"
 #include "kinetome/features/root_motion.h"
@@ -27,6 +29,28 @@ MatrixF effector_positions(const Skeleton& skeleton, const MatrixFView& motion,
         }
     }
     return effectors;
+}
+
+MatrixF select_effectors(const MatrixFView& effectors, std::span<const JointRole> chosen) {
+    if (effectors.cols() != 3 * static_cast<Eigen::Index>(effector_roles.size())) {
+        throw std::invalid_argument("effectors are chosen out of all of them");
+    }
+    std::vector<Eigen::Index> columns;
+    for (size_t e = 0; e < effector_roles.size(); ++e) {
+        if (std::ranges::find(chosen, effector_roles[e]) == chosen.end()) continue;
+        for (size_t axis = 0; axis < 3; ++axis) {
+            columns.push_back(static_cast<Eigen::Index>(3 * e + axis));
+        }
+    }
+    if (columns.empty() || columns.size() != 3 * chosen.size()) {
+        throw std::invalid_argument("the chosen joints are not different end effectors");
+    }
+    return effectors(Eigen::all, columns);
+}
+
+double radius_for_effectors(double radius, size_t count) {
+    return radius *
+           std::sqrt(static_cast<double>(count) / static_cast<double>(effector_roles.size()));
 }
 
 MatrixF stack_neighbours(const MatrixFView& rows, int64_t offset) {

@@ -1,13 +1,12 @@
 // neighbors: the neighbourhood graph of each take, shard by shard (S3 §3).
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "clip_pipeline.h"
 #include "kinetome/base/progress.h"
-#include "kinetome/features/effectors.h"
 #include "kinetome/models/neighbor_graph.h"
 #include "kinetome/stages/corpus_shape.h"
+#include "kinetome/stages/graph_features.h"
 #include "kinetome/stages/stage.h"
 #include "kinetome/store/feature_store.h"
 #include "kinetome/store/neighbor_store.h"
@@ -18,15 +17,17 @@ namespace {
 struct Passenger {
     FeatureShardClip place;
     MatrixF effectors;
+    double radius = 0;
     NeighborGraph graph;
 };
 
 void compute(const ReindexOptions& options, Passenger& passenger) {
     const NeighborOptions& asked = options.neighbors;
-    const int64_t offset = std::llround(asked.stack_offset * options.features.effector_rate);
+    const MatrixF features = graph_features(passenger.effectors, options);
+    passenger.radius = graph_radius(features, asked);
     // Takes are what runs in parallel here.
     passenger.graph =
-        neighbor_graph(stack_neighbours(passenger.effectors, offset), asked.knn, asked.engine, 1);
+        neighbor_graph(features, {passenger.radius, asked.knn.neighbours}, asked.engine, 1);
 }
 
 /// Memory that the largest clip of a shard needs on its way.
@@ -62,15 +63,16 @@ StageResult make_neighbors(const StageContext& context, const StageTask& task) {
         return std::make_shared<Passenger>(Passenger{
             clip,
             features.effectors(clip.clip_class, clip.first_effector_row, clip.effector_rows),
+            0,
             {}});
     };
     const auto work = [&](Passenger& passenger) { compute(options, passenger); };
     const auto write = [&](const Passenger& passenger) {
         const FeatureShardClip& clip = passenger.place;
         const NeighborGraph& graph = passenger.graph;
-        writer.add({clip.name, clip.clip_class, clip.source_frames, clip.source_rate,
-                    options.neighbors.knn.radius},
-                   graph.offsets(), graph.all_neighbours(), graph.all_distances());
+        writer.add(
+            {clip.name, clip.clip_class, clip.source_frames, clip.source_rate, passenger.radius},
+            graph.offsets(), graph.all_neighbours(), graph.all_distances());
         progress.advance(graph.frames());
     };
     run_clip_pipeline<Passenger>(

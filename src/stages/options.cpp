@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "joint_words.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/pieces.h"
@@ -106,6 +107,23 @@ OptionRow count_list(std::string name, std::string stage, std::vector<int64_t>& 
             }};
 }
 
+OptionRow joint_list(std::string name, std::string stage, std::vector<JointRole>& joints,
+                     std::string help) {
+    help += fmt::format(" ({})", fmt::join(joint_words(), "|"));
+    return {name,
+            std::move(stage),
+            OptionKind::text,
+            std::move(help),
+            [&joints] { return write_joints(joints); },
+            [&joints, name](const std::string& text) {
+                const auto parsed = parse_joints(text);
+                if (!parsed) {
+                    refuse(name, text, fmt::format("some of {}", fmt::join(joint_words(), ", ")));
+                }
+                joints = *parsed;
+            }};
+}
+
 constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
                                         std::pair{"subject", PartitionRule::subject},
                                         std::pair{"auto", PartitionRule::automatic}};
@@ -193,6 +211,12 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "at most so many of each frame, itself among them, the nearest"),
         number("stack-offset", "neighbors", g.stack_offset,
                "seconds between a frame and those before and after that it is compared with"),
+        joint_list("joints", "neighbors", g.joints,
+                   "whose motion is compared, separated by commas; the radius is scaled to their "
+                   "number"),
+        number("adapt-radius", "neighbors", g.adapt_radius,
+               "radius of a take at most this multiple of the median distance between its frames, "
+               "for motion of low amplitude; 0: the same radius for all takes"),
         choice("knn-engine", "neighbors", g.engine, knn_engine_names,
                "that searches neighbours; flann rounds"),
     };
@@ -288,6 +312,7 @@ void check_options(const ReindexOptions& o) {
     require(o.neighbors.knn.radius > 0, "radius must be above 0");
     require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
     require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");
+    require(o.neighbors.adapt_radius >= 0, "adapt-radius must not be negative");
     try {
         const std::regex expression(o.partition.subject_from);
         require(o.partition.subject_from.empty() || expression.mark_count() >= 1,

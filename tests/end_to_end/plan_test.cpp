@@ -231,6 +231,10 @@ serial_share = 0
 seconds_per_file = 0
 nanoseconds_per_value = 0
 serial_share = 0
+[neighbors]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
 [poses]
 seconds_per_file = 0
 moments_nanoseconds_per_row = 0

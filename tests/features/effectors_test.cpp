@@ -70,3 +70,28 @@ TEST_CASE("an empty clip has no effector rows") {
     CHECK(stacked.rows() == 0);
     CHECK(stacked.cols() == 45);
 }
+
+TEST_CASE("chosen effectors are the columns of theirs, in the order of all") {
+    MatrixF all(2, 15);
+    for (int64_t i = 0; i < all.size(); ++i) all.data()[i] = float(i);
+    const std::array arms = {JointRole::right_wrist, JointRole::left_wrist};
+    const MatrixF chosen = select_effectors(all, arms);
+    CHECK(chosen == all.middleCols(3, 6));
+    CHECK(select_effectors(all, effector_roles) == all);
+    const std::array head = {JointRole::head};
+    CHECK(select_effectors(all, head) == all.leftCols(3));
+    const std::array elbow = {JointRole::left_elbow};
+    const std::array twice = {JointRole::head, JointRole::head};
+    CHECK_THROWS_AS(select_effectors(all, elbow), std::invalid_argument);
+    CHECK_THROWS_AS(select_effectors(all, twice), std::invalid_argument);
+    CHECK_THROWS_AS(select_effectors(all, {}), std::invalid_argument);
+    CHECK_THROWS_AS(select_effectors(all.leftCols(12), head), std::invalid_argument);
+}
+
+TEST_CASE("the radius for some effectors leaves each of them as far as that for all") {
+    const MatrixF one_apart = MatrixF::Constant(1, 15, 1);
+    const std::array arms = {JointRole::left_wrist, JointRole::right_wrist};
+    const double all = double(one_apart.norm());
+    CHECK(radius_for_effectors(all, 2) == Approx(double(select_effectors(one_apart, arms).norm())));
+    CHECK(radius_for_effectors(72, 5) == 72);
+}

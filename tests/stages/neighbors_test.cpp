@@ -130,6 +130,29 @@ TEST_CASE("frames are stacked so many seconds apart, in frames of the effector r
     CHECK(shard.read(result).read(0).distances == graph.all_distances());
 }
 
+TEST_CASE("of some joints alone, the graph is that of their columns within a smaller radius") {
+    OneShard shard({{"a", loops(200, 4)}});
+    shard.options.neighbors.joints = {JointRole::left_wrist, JointRole::right_wrist};
+    const NeighborShardReader stored = shard.read(shard.make());
+    const double radius = 72 * std::sqrt(2.0 / 5);
+    CHECK(stored.clips()[0].clip.radius == Approx(radius));
+    const NeighborGraph graph =
+        neighbor_graph(stack_neighbours(loops(200, 4).middleCols(3, 6), 1),
+                       {stored.clips()[0].clip.radius, 128}, KnnEngine::blocks, 1);
+    CHECK(stored.read(0).neighbours == graph.all_neighbours());
+}
+
+TEST_CASE("an adapted radius is each take's own") {
+    OneShard shard({{"large", loops(200, 4) * 10}, {"small", loops(200, 4) / 4}});
+    shard.options.neighbors.adapt_radius = 0.5;
+    const NeighborShardReader stored = shard.read(shard.make());
+    CHECK(stored.clips()[0].clip.radius == 72);
+    const double small = stored.clips()[1].clip.radius;
+    CHECK(small > 10);
+    CHECK(small < 40);
+    for (const float distance : stored.read(1).distances) CHECK(double(distance) <= small);
+}
+
 TEST_CASE("takes that are short, still or repeated to the bit have their graphs") {
     const MatrixF one = loops(1, 1), few = loops(13, 1), still = MatrixF::Constant(300, columns, 7);
     MatrixF twice(120, columns);

@@ -35,6 +35,21 @@ TEST_CASE("what is written as configuration reads back as the same options") {
     CHECK(values_of(parsed(write_configuration(options))) == values_of(options));
 }
 
+TEST_CASE("joints are read in any words and written in the fewest") {
+    const auto rewritten = [](const std::string& joints) {
+        return write_configuration(parsed("joints = '" + joints + "'"));
+    };
+    const auto contains = [](const std::string& joints) {
+        return Catch::Contains("joints = '" + joints + "'\n");
+    };
+    CHECK_THAT(write_configuration({}), contains("all"));
+    CHECK_THAT(rewritten("left-arm,right-arm"), contains("arms"));
+    CHECK_THAT(rewritten("right-leg,head,right-leg"), contains("head,right-leg"));
+    CHECK_THAT(rewritten("legs,arms,head"), contains("all"));
+    CHECK(parsed("joints = 'right-leg,head'").neighbors.joints ==
+          std::vector{JointRole::head, JointRole::right_ankle});
+}
+
 TEST_CASE("every option has a name of its own") {
     ReindexOptions options;
     std::set<std::string> names;
@@ -59,7 +74,8 @@ TEST_CASE("values that make no sense are refused before a run begins") {
          {"shard-frames = 8191", "pose-rate = 0", "variance-share = 1.5", "least-clusters = 9000",
           "cluster-rule = 'bic'", "compression = 'zip'", "subject-from = '('",
           "subject-from = 'no group'", "min-gain = -1", "joint-map = '/no/such/file'", "radius = 0",
-          "neighbours = 0", "stack-offset = -0.1", "knn-engine = 'ann'"}) {
+          "neighbours = 0", "stack-offset = -0.1", "knn-engine = 'ann'", "adapt-radius = -1",
+          "joints = 'tail'", "joints = ''"}) {
         refused(toml);
     }
     CHECK_THROWS_AS(parsed("pose-rate = inf"), UsageError);

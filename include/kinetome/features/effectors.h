@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "kinetome/base/matrix.h"
 #include "kinetome/formats/skeleton.h"
@@ -20,6 +21,14 @@ inline constexpr std::array effector_roles = {JointRole::head, JointRole::left_w
 /// the skeleton lacks one of effector_roles (the message names it) or the shapes disagree.
 MatrixF effector_positions(const Skeleton& skeleton, const MatrixFView& motion,
                            const MatrixFView& positions);
+
+/// n × 3m: the columns of m of the effectors, out of the n × 15 of all, in the order of
+/// effector_roles. Throws std::invalid_argument for another shape, none or one that is no effector.
+MatrixF select_effectors(const MatrixFView& effectors, std::span<const JointRole> chosen);
+
+/// The radius for m effectors that allows each of them the distance that `radius` allows each of
+/// all five: squared distances add up over effectors, so that it is radius · √(m / 5).
+double radius_for_effectors(double radius, size_t count);
 
 /// n × 3d: before each row the one `offset` rows earlier, after it the one `offset` rows later,
 /// indices clamped to the clip (S3 §3: F45 at 30 Hz from rows of 15).

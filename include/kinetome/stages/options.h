@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinetome/features/effectors.h"
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/math/knn.h"
 #include "kinetome/models/pose_clusters.h"
@@ -41,9 +42,12 @@ struct StringOptions {
 };
 
 struct NeighborOptions {
-    KnnOptions knn;                        ///< r in cm (S3: 64) and k
+    KnnOptions knn;                        ///< r in cm for all effectors (S3: 64), and k
     KnnEngine engine = KnnEngine::blocks;  ///< that searches
     double stack_offset = 1.0 / 30.0;      ///< seconds between the poses stacked in one row
+    /// Compared; r is scaled to their number (radius_for_effectors).
+    std::vector<JointRole> joints{effector_roles.begin(), effector_roles.end()};
+    double adapt_radius = 0;  ///< r at most so many median distances of a take; 0: r as it is
 };
 
 struct ReindexOptions {
