@@ -151,12 +151,6 @@ const T& any_of(const std::vector<T>& choices, RandomStream& random) {
     return choices[static_cast<size_t>(random.below(choices.size()))];
 }
 
-MotionRun run_of(const MotionPiece& piece) {
-    return {.clip = piece.clip,
-            .first = static_cast<double>(piece.first),
-            .end = static_cast<double>(piece.end)};
-}
-
 void check(const MotionGraph& graph, const std::vector<int32_t>& nodes) {
     const auto outside = [&](int32_t node) { return node < 0 || node >= graph.nodes(); };
     if (std::ranges::any_of(nodes, outside)) {
@@ -201,30 +195,6 @@ GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request) {
         walk.frames += frames_of_step(graph, entry, way);
         entry = way.next;
     }
-}
-
-std::vector<MotionRun> runs_of_walk(const MotionGraph& graph, const std::vector<WalkStep>& steps,
-                                    double fade_frames) {
-    std::vector<MotionRun> runs;
-    for (const WalkStep& step : steps) {
-        const MotionPiece& entry = graph.piece(step.entry);
-        const MotionPiece& exit = graph.piece(step.exit);
-        if (runs.empty()) runs.push_back(run_of(entry));
-        if (step.entry == step.exit) {
-            runs.back().end = static_cast<double>(exit.end);
-            continue;
-        }
-        const auto in = static_cast<double>(entry.frames());
-        const auto out = static_cast<double>(exit.frames());
-        const double share = std::min(1.0, 2 * fade_frames / (in + out));
-        runs.back().end = static_cast<double>(entry.first) + in * (1 + share) / 2;
-        runs.back().fade_out = in * share;
-        runs.push_back({.clip = exit.clip,
-                        .first = static_cast<double>(exit.first) + out * (1 - share) / 2,
-                        .end = static_cast<double>(exit.end),
-                        .fade_in = out * share});
-    }
-    return runs;
 }
 
 }  // namespace kinetome

@@ -148,3 +148,35 @@ TEST_CASE("inside a node a walk goes over in the middle, elsewhere it plays take
           std::vector<MotionRun>{{0, 0, 40, 0, 40}, {1, 100, 200, 60, 0}});
     CHECK(runs_of_walk(graph, {{0, 2, 2}, {1, 3, 3}}, 10) == std::vector<MotionRun>{{1, 100, 200}});
 }
+
+TEST_CASE("pieces are crossed where they agree best, at moments that answer each other") {
+    // The second is the first at two thirds of the speed, but for an arm that differs in all but
+    // the third quarter.
+    MatrixF entry(80, 2), exit(120, 2);
+    for (int i = 0; i < 80; ++i) entry.row(i) << float(i * i) / 10, 0;
+    for (int j = 0; j < 120; ++j) {
+        const float i = float(j) * 2 / 3;
+        exit.row(j) << i * i / 10, i > 40 && i < 60 ? 0.0f : 90.0f;
+    }
+    const Crossing found = best_crossing(entry, exit, 10, 15);
+    CHECK(found.entry > 44);
+    CHECK(found.entry < 56);
+    CHECK(found.exit == Approx(found.entry * 1.5).margin(2));
+
+    // A fade as long as the pieces leaves no choice, nor do pieces that no warp joins.
+    const Crossing whole = best_crossing(entry, exit, 80, 120);
+    CHECK(whole.entry == 40);
+    CHECK(whole.exit == 60);
+    const Crossing unlike = best_crossing(entry.topRows(10), exit, 1, 1);
+    CHECK(unlike.entry == 5);
+    CHECK(unlike.exit == 60);
+}
+
+TEST_CASE("a crossing near the end of a piece is moved until the fade fits") {
+    const MotionGraph graph({{0, 0, 40}, {0, 40, 60}, {1, 100, 160}, {1, 170, 200}}, {0, 1, 0, 1},
+                            2, 10);
+    const std::vector<WalkStep> steps = {{0, 0, 2}, {1, 3, 3}};
+    const auto crossing = [](int32_t, int32_t) { return Crossing{39, 3}; };
+    CHECK(runs_of_walk(graph, steps, 10, crossing) ==
+          std::vector<MotionRun>{{0, 0, 40, 0, 8}, {1, 100, 200, 12, 0}});
+}

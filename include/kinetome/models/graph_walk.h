@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "kinetome/base/matrix.h"
 #include "kinetome/models/motion_graph.h"
 #include "kinetome/models/motion_walk.h"
 
@@ -25,7 +27,7 @@ struct WalkStep {
 
 struct GraphWalk {
     std::vector<WalkStep> steps;
-    double frames = 0;  ///< what its runs last
+    double frames = 0;  ///< what its runs last if it goes over in the middle of pieces
     /// Nothing (that leads to a wanted end) followed the last node, and `frames` falls short.
     bool ended_early = false;
 };
@@ -39,9 +41,32 @@ struct GraphWalk {
 /// that are not there.
 GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request);
 
-/// What the walk plays: inside a node it goes over from the entry to the exit, in the middle of
-/// both, in fades of at most `fade_frames`; from node to node it goes on in the clip of the exit,
-/// with the frames that lie between. So every seam is one that a take has.
+/// Where a walk goes over from a piece to another of the same node: frames after their firsts, at
+/// the middle of the fade, need not be whole.
+struct Crossing {
+    double entry = 0, exit = 0;
+};
+
+/// Where the pieces agree best: of all moments that dynamic time warping finds to answer each other
+/// (slope_limited_steps, warp.h), those about which the poses are nearest over the length of the
+/// fade. `entry` and `exit` are the n × d and m × d poses of the pieces, place and heading removed;
+/// lengths and result count in rows. The fade stays inside both pieces, `fade_entry` and
+/// `fade_exit` rows of them; the middles of both when that leaves no choice or no warp is found.
+Crossing best_crossing(const MatrixFView& entry, const MatrixFView& exit, double fade_entry,
+                       double fade_exit);
+
+/// Lengths of a fade on both its sides: in the proportion of the pieces' lengths, so that it goes
+/// through equal shares of them, `fade_frames` in the mean but no longer than the pieces.
+Crossing fade_lengths(const MotionPiece& entry, const MotionPiece& exit, double fade_frames);
+
+/// What the walk plays: inside a node it goes over from the entry to the exit where
+/// `crossing(entry, exit)` says, moved as far as the fade (fade_lengths) needs to stay inside the
+/// pieces; from node to node it goes on in the clip of the exit, with the frames that lie between.
+/// So every seam is one that a take has.
+std::vector<MotionRun> runs_of_walk(
+    const MotionGraph& graph, const std::vector<WalkStep>& steps, double fade_frames,
+    const std::function<Crossing(int32_t entry, int32_t exit)>& crossing);
+/// The same, in the middle of both.
 std::vector<MotionRun> runs_of_walk(const MotionGraph& graph, const std::vector<WalkStep>& steps,
                                     double fade_frames);
 

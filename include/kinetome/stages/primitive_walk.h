@@ -31,9 +31,10 @@ struct PrimitiveWalk {
 
 /// Through the primitives of one class of skeletons: that of most of those that `from` names, or of
 /// most. Clips of other bodies are put on the one that moves (retarget.h), clips of other rates are
-/// resampled. Without `to` the motion is cut to the wanted length. Throws UsageError for options
-/// that make no sense, for a label or cluster that is not there, and when no path leads from the
-/// one to the other.
+/// resampled. It goes over from one primitive of a node to another where they agree best
+/// (best_crossing). Without `to` the motion is cut to the wanted length. Throws UsageError for
+/// options that make no sense, for a label or cluster that is not there, and when no path leads
+/// from the one to the other.
 PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
                               const ClipSource& source, const WalkOptions& options);
 
