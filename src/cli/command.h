@@ -49,5 +49,6 @@ Command verify_command();
 Command gc_command();
 Command diff_command();
 Command export_command();
+Command evaluate_command();
 
 }  // namespace kinetome::cli

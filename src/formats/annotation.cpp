@@ -1,10 +1,6 @@
 #include "kinetome/formats/annotation.h"
 
-#include <charconv>
-
-#include "kinetome/base/csv.h"
-#include "kinetome/base/error.h"
-#include "kinetome/base/quote.h"
+#include "kinetome/formats/csv_table.h"
 
 namespace kinetome {
 namespace {
@@ -12,34 +8,8 @@ namespace {
 const std::vector<std::string> cycle_header = {"clip", "first", "end", "label"};
 const std::vector<std::string> truth_header = {"clip", "first", "end", "label", "end_lo", "end_hi"};
 
-/// Records after the header, each with as many fields as the header.
-std::vector<CsvRecord> parse_table(std::string_view text, const std::string& path,
-                                   const std::vector<std::string>& header) {
-    std::vector<CsvRecord> records = parse_csv(text, path);
-    if (records.empty() || records.front().fields != header) {
-        std::string expected;
-        append_csv_line(expected, header);
-        expected.pop_back();
-        throw InputError::at_line(path, 1, "expected the header line " + expected);
-    }
-    records.erase(records.begin());
-    for (const CsvRecord& record : records) {
-        if (record.fields.size() != header.size())
-            throw InputError::at_line(path, record.line,
-                                      "expected " + std::to_string(header.size()) +
-                                          " fields, found " + std::to_string(record.fields.size()));
-    }
-    return records;
-}
-
 int64_t frame_field(const CsvRecord& record, size_t field, const std::string& path) {
-    const std::string& text = record.fields[field];
-    int64_t frame = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), frame);
-    if (error != std::errc() || end != text.data() + text.size() || frame < 0)
-        throw InputError::at_line(path, record.line,
-                                  "expected a frame number, found " + quote_for_message(text));
-    return frame;
+    return whole_number_field(record, field, "a frame number", path);
 }
 
 }  // namespace
@@ -70,7 +40,7 @@ std::string write_cycles_csv(const std::vector<CycleRow>& rows) {
 
 std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& path) {
     std::vector<TruthRow> rows;
-    for (const CsvRecord& record : parse_table(text, path, truth_header))
+    for (const CsvRecord& record : parse_csv_table(text, path, truth_header))
         rows.push_back({.clip = from_csv_text(record.fields[0]),
                         .first = frame_field(record, 1, path),
                         .end = frame_field(record, 2, path),
@@ -83,7 +53,7 @@ std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& 
 
 std::vector<CycleRow> parse_cycles_csv(std::string_view text, const std::string& path) {
     std::vector<CycleRow> rows;
-    for (const CsvRecord& record : parse_table(text, path, cycle_header))
+    for (const CsvRecord& record : parse_csv_table(text, path, cycle_header))
         rows.push_back({.clip = from_csv_text(record.fields[0]),
                         .first = frame_field(record, 1, path),
                         .end = frame_field(record, 2, path),
