@@ -24,7 +24,7 @@ void check(const MatrixFView& first, const MatrixFView& second, std::span<const 
             throw std::invalid_argument("a warping step must lead on");
         }
     }
-    if (steps.empty() || steps.size() >= WarpFront::begins_here) {
+    if (steps.empty() || steps.size() > std::numeric_limits<uint8_t>::max() - 1) {
         throw std::invalid_argument("warping takes 1 to 254 steps");
     }
 }
@@ -55,21 +55,19 @@ struct PathEnd {
 /// The table of two sequences from their beginnings to their ends, row after row.
 class WarpTable {
   public:
-    WarpTable(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options)
+    WarpTable(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options,
+              std::vector<RowRange> region, bool with_choices)
         : first_(first),
           options_(options),
-          region_(warp_region(first.rows(), second.rows(), options.steps, options.end_slip)),
-          front_(second, weighted(options)) {}
+          region_(std::move(region)),
+          front_(second, weighted(options), options.radius, with_choices) {}
 
     int64_t rows() const { return first_.rows(); }
     int64_t columns() const { return front_.columns(); }
-    bool crossable() const {
-        return std::ranges::any_of(region_, [](const RowRange& row) { return row.size() > 0; });
-    }
-
     void advance() {
         front_.advance(first_.row(row_).data(), region_[static_cast<size_t>(row_)], start());
         look_for_ends();
+        row_least_.push_back(least_of_latest());
         ++row_;
     }
 
@@ -80,11 +78,8 @@ class WarpTable {
     /// No path from here on costs less, as long as paths neither begin nor end any more.
     double least_total() const {
         if (row_ <= options_.end_slip || row_ >= rows() - options_.end_slip) return 0;
-        double least = infinite;
-        for (int64_t back = 0; back < std::min(front_.depth() - 1, row_); ++back) {
-            least = std::min(least, std::ranges::min(front_.totals(back)));
-        }
-        return least;
+        const int64_t reach = std::min(front_.depth() - 1, row_);
+        return std::ranges::min(std::span(row_least_).last(static_cast<size_t>(reach)));
     }
 
   private:
@@ -95,6 +90,14 @@ class WarpTable {
             steps.push_back({step.first, step.second, weight});
         }
         return steps;
+    }
+
+    double least_of_latest() const {
+        const RowRange& columns = region_[static_cast<size_t>(row_)];
+        const auto totals = front_.totals().subspan(size_t(columns.first), size_t(columns.size()));
+        double least = infinite;
+        for (const double total : totals) least = total < least ? total : least;
+        return least;
     }
 
     TableStart start() const {
@@ -122,8 +125,13 @@ class WarpTable {
     const std::vector<RowRange> region_;
     WarpFront front_;
     PathEnd best_end_;
+    std::vector<double> row_least_;  ///< of each row so far, the least cost of a path to it
     int64_t row_ = 0;
 };
+
+bool crossable(std::span<const RowRange> region) {
+    return std::ranges::any_of(region, [](const RowRange& row) { return row.size() > 0; });
+}
 
 /// Follows the choices from an end of the table to the beginning.
 std::vector<WarpCell> trace(const std::vector<uint8_t>& choices, const WarpTable& table,
@@ -135,8 +143,8 @@ std::vector<WarpCell> trace(const std::vector<uint8_t>& choices, const WarpTable
         cells.push_back({static_cast<int32_t>(i), static_cast<int32_t>(j)});
         const uint8_t choice = choices[static_cast<size_t>(i * table.columns() + j)];
         if (choice == WarpFront::begins_here) break;
-        i -= steps[choice].first;
-        j -= steps[choice].second;
+        i -= steps[choice - 1U].first;
+        j -= steps[choice - 1U].second;
     }
     std::ranges::reverse(cells);
     return cells;
@@ -151,8 +159,9 @@ void check(const MatrixFView& first, const MatrixFView& second, const WarpOption
 
 WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options) {
     check(first, second, options);
-    WarpTable table(first, second, options);
-    if (!table.crossable()) return {};
+    auto region = warp_region(first.rows(), second.rows(), options.steps, options.end_slip);
+    if (!crossable(region)) return {};
+    WarpTable table(first, second, options, std::move(region), true);
     std::vector<uint8_t> choices;
     choices.reserve(static_cast<size_t>(table.rows() * table.columns()));
     for (int64_t i = 0; i < table.rows(); ++i) {
@@ -169,6 +178,34 @@ WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOpt
     return path;
 }
 
+namespace {
+
+double squared_distance(const MatrixFView& first, int64_t i, const MatrixFView& second, int64_t j) {
+    return (first.row(i).cast<double>() - second.row(j).cast<double>()).squaredNorm();
+}
+
+/// Whether the rows at either end allow a path: most sequences of other movements do not meet
+/// there.
+bool ends_meet(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options) {
+    // Summed in another order than in the table; the table decides what lies so near to the radius.
+    const double limit = options.radius * options.radius * (1 + 1e-9);
+    const int64_t n = first.rows(), m = second.rows();
+    bool begin = false, end = false;
+    for (int64_t slip = 0; slip <= options.end_slip; ++slip) {
+        if (slip < n) {
+            begin = begin || squared_distance(first, slip, second, 0) <= limit;
+            end = end || squared_distance(first, n - 1 - slip, second, m - 1) <= limit;
+        }
+        if (slip < m) {
+            begin = begin || squared_distance(first, 0, second, slip) <= limit;
+            end = end || squared_distance(first, n - 1, second, m - 1 - slip) <= limit;
+        }
+    }
+    return begin && end;
+}
+
+}  // namespace
+
 double warp_cost(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options,
                  double at_most) {
     if (options.weight == WarpWeight::cells) {
@@ -176,8 +213,11 @@ double warp_cost(const MatrixFView& first, const MatrixFView& second, const Warp
         return mean <= at_most ? mean : infinite;
     }
     check(first, second, options);
-    WarpTable table(first, second, options);
-    if (!table.crossable()) return infinite;
+    if (first.rows() == 0 || second.rows() == 0) return infinite;
+    if (options.radius < infinite && !ends_meet(first, second, options)) return infinite;
+    auto region = warp_region(first.rows(), second.rows(), options.steps, options.end_slip);
+    if (!crossable(region)) return infinite;
+    WarpTable table(first, second, options, std::move(region), false);
     const double weight = weight_of(options.weight, first.rows(), second.rows());
     // A little more than the bound, so that rounding never gives up what the division would let in.
     const double hopeless = at_most * weight * (1 + 1e-12);
@@ -197,12 +237,12 @@ struct Match {
 };
 
 /// The best path to each row of the sequence, where it is good enough.
-std::vector<Match> match_ends(const MatrixFView& query, const MatrixFView& sequence, double at_most,
-                              std::span<const WarpStep> steps) {
+std::vector<Match> match_ends(const MatrixFView& query, const MatrixFView& sequence,
+                              const MatchOptions& options) {
     std::vector<TableStep> turned;
-    for (const WarpStep& step : steps)
+    for (const WarpStep& step : options.steps)
         turned.push_back({step.second, step.first, double(step.first)});
-    WarpFront front(query, std::move(turned));
+    WarpFront front(query, std::move(turned), options.radius, true);
     const int64_t columns = front.columns();
     std::vector<std::vector<int64_t>> begins(static_cast<size_t>(front.depth()));
     for (auto& row : begins) row.resize(static_cast<size_t>(columns));
@@ -217,13 +257,13 @@ std::vector<Match> match_ends(const MatrixFView& query, const MatrixFView& seque
             if (choice == WarpFront::begins_here) {
                 begin = i;
             } else {
-                const TableStep& step = front.steps()[choice];
+                const TableStep& step = front.steps()[choice - 1U];
                 const auto from = static_cast<size_t>((i - step.rows) % front.depth());
                 begin = begins[from][static_cast<size_t>(j - step.columns)];
             }
         }
         const double mean = front.totals().back() / double(columns);
-        if (mean <= at_most) ends.push_back({mean, {latest.back(), i + 1}});
+        if (mean <= options.at_most) ends.push_back({mean, {latest.back(), i + 1}});
     }
     return ends;
 }
@@ -245,18 +285,18 @@ std::vector<Match> without_overlaps(std::vector<Match> matches, int64_t sequence
 }  // namespace
 
 std::vector<WarpPath> warp_matches(const MatrixFView& query, const MatrixFView& sequence,
-                                   double at_most, const std::vector<WarpStep>& steps) {
-    check(query, sequence, steps);
-    if (std::ranges::any_of(steps, [](const WarpStep& step) { return step.first == 0; })) {
+                                   const MatchOptions& options) {
+    check(query, sequence, options.steps);
+    if (std::ranges::any_of(options.steps, [](const WarpStep& step) { return step.first == 0; })) {
         throw std::invalid_argument("each step of a match must go on in the query");
     }
     if (query.rows() == 0) return {};
-    const WarpOptions options{steps, WarpWeight::first, 0};
+    const WarpOptions inside{options.steps, WarpWeight::first, 0, options.radius};
     std::vector<WarpPath> paths;
     for (const Match& match :
-         without_overlaps(match_ends(query, sequence, at_most, steps), sequence.rows())) {
+         without_overlaps(match_ends(query, sequence, options), sequence.rows())) {
         const auto window = sequence.middleRows(match.rows.first, match.rows.size());
-        WarpPath path = warp(query, window, options);
+        WarpPath path = warp(query, window, inside);
         for (WarpCell& cell : path.cells) cell.second += static_cast<int32_t>(match.rows.first);
         paths.push_back(std::move(path));
     }

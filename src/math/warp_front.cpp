@@ -13,9 +13,16 @@ constexpr double unreachable = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-WarpFront::WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps)
-    : columns_(sequence.rows()), dimension_(sequence.cols()), steps_(std::move(steps)) {
-    for (const TableStep& step : steps_) depth_ = std::max<int64_t>(depth_, step.rows + 1);
+WarpFront::WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps, double radius,
+                     bool with_choices)
+    : columns_(sequence.rows()),
+      dimension_(sequence.cols()),
+      squared_radius_(radius * radius),
+      steps_(std::move(steps)) {
+    for (const TableStep& step : steps_) {
+        depth_ = std::max<int64_t>(depth_, step.rows + 1);
+        margin_ = std::max<int64_t>(margin_, step.columns);
+    }
     const int64_t block_count = (columns_ + lanes - 1) / lanes;
     blocks_.resize(static_cast<size_t>(block_count * dimension_ * lanes));
     for (int64_t j = 0; j < columns_; ++j) {
@@ -23,8 +30,8 @@ WarpFront::WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps)
         for (int64_t c = 0; c < dimension_; ++c) block[c * lanes] = double(sequence(j, c));
     }
     distances_.resize(static_cast<size_t>(block_count * lanes));
-    ring_.assign(static_cast<size_t>(depth_ * columns_), unreachable);
-    choices_.resize(static_cast<size_t>(columns_));
+    if (with_choices) choices_.resize(static_cast<size_t>(columns_));
+    ring_.assign(static_cast<size_t>(depth_ * (margin_ + columns_)), unreachable);
 }
 
 void WarpFront::measure(const float* row, const RowRange& columns) {
@@ -39,44 +46,67 @@ void WarpFront::measure(const float* row, const RowRange& columns) {
             }
         }
         for (int64_t lane = 0; lane < lanes; ++lane) {
-            distances_[static_cast<size_t>(first + lane)] = std::sqrt(squares[lane]);
+            distances_[static_cast<size_t>(first + lane)] =
+                squares[lane] <= squared_radius_ ? std::sqrt(squares[lane]) : unreachable;
         }
     }
 }
 
-double* WarpFront::ring_row(int64_t row) {
-    return ring_.data() + row % depth_ * columns_;
+const double* WarpFront::ring_row(int64_t row) const {
+    // Rows before the first are there as well: none has been reached.
+    return ring_.data() + (row + depth_) % depth_ * (margin_ + columns_) + margin_;
 }
 
-std::span<const double> WarpFront::totals(int64_t back) const {
-    return {ring_.data() + (rows_ - 1 - back) % depth_ * columns_, static_cast<size_t>(columns_)};
+void WarpFront::begin(const RowRange& columns, const TableStart& start, double* totals) {
+    std::fill_n(totals, columns_, unreachable);
+    std::ranges::fill(choices_, begins_here);
+    for (int64_t j = columns.first; j < std::min(columns.end, start.columns); ++j) {
+        const double weight = start.weight + double(j) * start.per_column;
+        const double total = weight * distances_[static_cast<size_t>(j)];
+        if (total < unreachable) totals[j] = total;
+    }
+}
+
+void WarpFront::come_by(size_t step, const RowRange& columns, double* totals) {
+    const double weight = steps_[step].weight;
+    const double* const from = ring_row(rows_ - steps_[step].rows) - steps_[step].columns;
+    const double* const distances = distances_.data();
+    if (choices_.empty()) {
+        for (int64_t j = columns.first; j < columns.end; ++j) {
+            const double total = from[j] + weight * distances[j];
+            totals[j] = total < totals[j] ? total : totals[j];
+        }
+        return;
+    }
+    const auto choice = static_cast<uint8_t>(step + 1);
+    for (int64_t j = columns.first; j < columns.end; ++j) {
+        const double total = from[j] + weight * distances[j];
+        uint8_t& chosen = choices_[static_cast<size_t>(j)];
+        if (total < totals[j] || (total == totals[j] && choice < chosen)) {
+            totals[j] = total;
+            chosen = choice;
+        }
+    }
+}
+
+void WarpFront::come_within(const RowRange& columns, double* totals) {
+    if (std::ranges::none_of(steps_, [](const TableStep& step) { return step.rows == 0; })) return;
+    for (int64_t j = columns.first; j < columns.end; ++j) {
+        for (size_t s = 0; s < steps_.size(); ++s) {
+            if (steps_[s].rows == 0) come_by(s, {j, j + 1}, totals);
+        }
+    }
 }
 
 void WarpFront::advance(const float* row, const RowRange& columns, const TableStart& start) {
     measure(row, columns);
-    double* const totals = ring_row(rows_);
-    std::fill_n(totals, columns_, unreachable);
-    for (int64_t j = columns.first; j < columns.end; ++j) {
-        const double distance = distances_[static_cast<size_t>(j)];
-        double least = unreachable;
-        uint8_t choice = begins_here;
-        if (j < start.columns) {
-            const double total = (start.weight + double(j) * start.per_column) * distance;
-            if (total < least) least = total;
-        }
-        for (size_t s = 0; s < steps_.size(); ++s) {
-            const TableStep& step = steps_[s];
-            if (step.rows > rows_ || step.columns > j) continue;
-            const double total =
-                ring_row(rows_ - step.rows)[j - step.columns] + step.weight * distance;
-            if (total < least) {
-                least = total;
-                choice = static_cast<uint8_t>(s);
-            }
-        }
-        totals[j] = least;
-        choices_[static_cast<size_t>(j)] = choice;
+    double* const totals = ring_.data() + (ring_row(rows_) - ring_.data());
+    begin(columns, start, totals);
+    for (size_t s = 0; s < steps_.size(); ++s) {
+        if (steps_[s].rows > 0) come_by(s, columns, totals);
     }
+    // Steps within the row come last: what they lead on from must be settled.
+    come_within(columns, totals);
     ++rows_;
 }
 

@@ -26,39 +26,49 @@ struct TableStart {
 
 class WarpFront {
   public:
-    static constexpr uint8_t begins_here = 255;
+    static constexpr uint8_t begins_here = 0;
 
-    /// `sequence` (m × d) runs along the columns and is copied.
-    WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps);
+    /// `sequence` (m × d) runs along the columns and is copied. No path leads through a cell whose
+    /// distance is greater than the radius.
+    WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps, double radius,
+              bool with_choices);
 
     /// Computes the next row of the table in the given columns, and leaves the others unreachable.
     void advance(const float* row, const RowRange& columns, const TableStart& start);
 
     /// Of the row `back` rows before the latest, which is less than depth(): the least cost of a
     /// path to each column, infinite where there is none.
-    std::span<const double> totals(int64_t back = 0) const;
-    /// Of the latest row: by which step the path comes, or begins_here. Nothing sensible where
-    /// there is no path.
+    std::span<const double> totals(int64_t back = 0) const {
+        return {ring_row(rows_ - 1 - back), static_cast<size_t>(columns_)};
+    }
+    /// Of the latest row: by which step the path comes, counted from 1, or begins_here. Of what
+    /// costs the same the lowest. Empty unless asked for.
     std::span<const uint8_t> choices() const { return choices_; }
+    /// Infinite beyond the radius.
     std::span<const double> distances() const { return distances_; }
 
     std::span<const TableStep> steps() const { return steps_; }
     int64_t columns() const { return columns_; }
-    /// Rows that a step may reach back, and the latest.
+    /// The latest row and those that a step may reach back to.
     int64_t depth() const { return depth_; }
 
   private:
     void measure(const float* row, const RowRange& columns);
-    double* ring_row(int64_t row);
+    const double* ring_row(int64_t row) const;
+    void begin(const RowRange& columns, const TableStart& start, double* totals);
+    void come_by(size_t step, const RowRange& columns, double* totals);
+    void come_within(const RowRange& columns, double* totals);
 
     int64_t columns_, dimension_;
+    double squared_radius_;
     std::vector<TableStep> steps_;
-    int64_t depth_ = 1;
+    int64_t depth_ = 1, margin_ = 0;
     int64_t rows_ = 0;
     std::vector<double> blocks_;  ///< the sequence, 8 rows at a time with their lanes side by side
     std::vector<double> distances_;
-    std::vector<double> ring_;
     std::vector<uint8_t> choices_;
+    std::vector<double>
+        ring_;  ///< `depth_` rows, each after `margin_` columns that no path reaches
 };
 
 }  // namespace kinetome

@@ -40,6 +40,8 @@ struct WarpOptions {
     WarpWeight weight = WarpWeight::both;
     int64_t end_slip = 0;  ///< rows that one of the sequences may leave unmatched at each end; they
                            ///< count with the nearest cell of the path
+    double radius = std::numeric_limits<double>::infinity();  ///< no path leads through a cell of
+                                                              ///< rows farther apart
 };
 
 struct WarpCell {
@@ -71,12 +73,16 @@ WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOpt
 double warp_cost(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options,
                  double at_most = std::numeric_limits<double>::infinity());
 
-/// Where in a long sequence the query occurs: the best path to each row of the sequence, cells
-/// weighted by WarpWeight::first, those of a mean cost of `at_most` or less; of those that overlap
-/// in the sequence the cheaper, then the earlier. In the order of the sequence. Each step must go
-/// on in the query (the first sequence).
+struct MatchOptions {
+    double at_most = std::numeric_limits<double>::infinity();  ///< mean cost of a match
+    std::vector<WarpStep> steps = slope_limited_steps();       ///< each goes on in the query
+    double radius = std::numeric_limits<double>::infinity();   ///< as in WarpOptions
+};
+
+/// Where in a long sequence the query (the first sequence) occurs: of the best paths to each row of
+/// the sequence, cells weighted by WarpWeight::first, those that are cheap enough; of those that
+/// overlap in the sequence the cheaper, then the earlier. In the order of the sequence.
 std::vector<WarpPath> warp_matches(const MatrixFView& query, const MatrixFView& sequence,
-                                   double at_most,
-                                   const std::vector<WarpStep>& steps = slope_limited_steps());
+                                   const MatchOptions& options);
 
 }  // namespace kinetome
