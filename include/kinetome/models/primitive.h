@@ -17,13 +17,17 @@ enum class PrimitiveMethod {
 
 /// Times are seconds, distances those of the features (cm).
 struct CostRidgeOptions {
-    double radius = 72;            ///< a repetition is nearer than this, on the mean along its path
-    double path_side = 8.0 / 30;   ///< that a path extends to either side of the pair it is for
-    double relative_ridge = 0.35;  ///< between two repetitions the cost rises above either by this
-                                   ///< share of its top …
-    double least_ridge = 1.5;      ///< … and by so much
-    double longest_gap = 1.6;      ///< periods; a longer stretch is searched again by itself
-    double least_piece = 0.4;      ///< periods; what is left at the end, if shorter, joins the last
+    double radius = 72;           ///< a repetition is nearer than this, on the mean along its path
+    double path_side = 8.0 / 30;  ///< that a path extends to either side of the pair it is for
+    double least_ridge = 1.5;     ///< by so much the cost rises between two repetitions, and by …
+    double ridge_share = 0.35;  ///< … this share of its top, where the activity has no period, or …
+    double periodic_ridge_share = 0.2;  ///< … by this where it has one
+    double least_dip = 0.05;  ///< a period is the shortest lag at which the mean cost dips by this
+                              ///< share of its top at shorter lags, and by …
+    double dip_of_deepest = 0.3;  ///< … this share of what its deepest dip has
+    double least_spacing = 0.6;   ///< periods between two repetitions
+    double longest_gap = 1.6;     ///< periods; a longer stretch is searched by itself
+    double least_piece = 0.4;     ///< periods; what is left at the end, if shorter, joins the last
 };
 
 /// Times are seconds, distances those of the features (cm).
