@@ -14,11 +14,13 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-void check(const MatrixFView& first, const MatrixFView& second, std::span<const WarpStep> steps) {
-    if (first.cols() != second.cols()) {
-        throw std::invalid_argument("rows of " + std::to_string(first.cols()) + " and of " +
-                                    std::to_string(second.cols()) + " columns cannot be warped");
-    }
+void check_columns(const MatrixFView& first, const MatrixFView& second) {
+    if (first.cols() == second.cols()) return;
+    throw std::invalid_argument("rows of " + std::to_string(first.cols()) + " and of " +
+                                std::to_string(second.cols()) + " columns cannot be warped");
+}
+
+void check(std::span<const WarpStep> steps) {
     for (const WarpStep& step : steps) {
         if (step.first < 0 || step.second < 0 || step == WarpStep{0, 0}) {
             throw std::invalid_argument("a warping step must lead on");
@@ -52,20 +54,28 @@ struct PathEnd {
     auto order() const { return std::tuple(total, first_slip + second_slip, second_slip); }
 };
 
-/// The table of two sequences from their beginnings to their ends, row after row.
+std::vector<TableStep> weighted_steps(const WarpOptions& options) {
+    std::vector<TableStep> steps;
+    for (const WarpStep& step : options.steps) {
+        const double weight = cell_weight(options.weight, step.first, step.second);
+        steps.push_back({step.first, step.second, weight});
+    }
+    return steps;
+}
+
+/// The table of two sequences from their beginnings to their ends, row after row. `Rows` are those
+/// of the first sequence, or of the distances between the two.
+template <class Rows>
 class WarpTable {
   public:
-    WarpTable(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options,
-              std::vector<RowRange> region, bool with_choices)
-        : first_(first),
-          options_(options),
-          region_(std::move(region)),
-          front_(second, weighted(options), options.radius, with_choices) {}
+    WarpTable(const Rows& rows, WarpFront front, const WarpOptions& options,
+              std::vector<RowRange> region)
+        : given_(rows), options_(options), region_(std::move(region)), front_(std::move(front)) {}
 
-    int64_t rows() const { return first_.rows(); }
+    int64_t rows() const { return given_.rows(); }
     int64_t columns() const { return front_.columns(); }
     void advance() {
-        front_.advance(first_.row(row_).data(), region_[static_cast<size_t>(row_)], start());
+        front_.advance(given_.row(row_).data(), region_[static_cast<size_t>(row_)], start());
         look_for_ends();
         row_least_.push_back(least_of_latest());
         ++row_;
@@ -83,15 +93,6 @@ class WarpTable {
     }
 
   private:
-    static std::vector<TableStep> weighted(const WarpOptions& options) {
-        std::vector<TableStep> steps;
-        for (const WarpStep& step : options.steps) {
-            const double weight = cell_weight(options.weight, step.first, step.second);
-            steps.push_back({step.first, step.second, weight});
-        }
-        return steps;
-    }
-
     double least_of_latest() const {
         const RowRange& columns = region_[static_cast<size_t>(row_)];
         const auto totals = front_.totals().subspan(size_t(columns.first), size_t(columns.size()));
@@ -120,7 +121,7 @@ class WarpTable {
         }
     }
 
-    const MatrixFView& first_;
+    const Rows& given_;
     const WarpOptions& options_;
     const std::vector<RowRange> region_;
     WarpFront front_;
@@ -134,7 +135,8 @@ bool crossable(std::span<const RowRange> region) {
 }
 
 /// Follows the choices from an end of the table to the beginning.
-std::vector<WarpCell> trace(const std::vector<uint8_t>& choices, const WarpTable& table,
+template <class Rows>
+std::vector<WarpCell> trace(const std::vector<uint8_t>& choices, const WarpTable<Rows>& table,
                             std::span<const WarpStep> steps) {
     std::vector<WarpCell> cells;
     int64_t i = table.rows() - 1 - table.best_end().first_slip;
@@ -150,18 +152,8 @@ std::vector<WarpCell> trace(const std::vector<uint8_t>& choices, const WarpTable
     return cells;
 }
 
-void check(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options) {
-    check(first, second, options.steps);
-    if (options.end_slip < 0) throw std::invalid_argument("a warping path cannot slip below 0");
-}
-
-}  // namespace
-
-WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options) {
-    check(first, second, options);
-    auto region = warp_region(first.rows(), second.rows(), options.steps, options.end_slip);
-    if (!crossable(region)) return {};
-    WarpTable table(first, second, options, std::move(region), true);
+template <class Rows>
+WarpPath best_path(WarpTable<Rows> table, const WarpOptions& options) {
     std::vector<uint8_t> choices;
     choices.reserve(static_cast<size_t>(table.rows() * table.columns()));
     for (int64_t i = 0; i < table.rows(); ++i) {
@@ -174,8 +166,32 @@ WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOpt
     path.cells = trace(choices, table, options.steps);
     path.mean = path.total / (options.weight == WarpWeight::cells
                                   ? double(path.cells.size())
-                                  : weight_of(options.weight, first.rows(), second.rows()));
+                                  : weight_of(options.weight, table.rows(), table.columns()));
     return path;
+}
+
+void check(const WarpOptions& options) {
+    check(options.steps);
+    if (options.end_slip < 0) throw std::invalid_argument("a warping path cannot slip below 0");
+}
+
+}  // namespace
+
+WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options) {
+    check_columns(first, second);
+    check(options);
+    auto region = warp_region(first.rows(), second.rows(), options.steps, options.end_slip);
+    if (!crossable(region)) return {};
+    WarpFront front(second, weighted_steps(options), options.radius, true);
+    return best_path(WarpTable(first, std::move(front), options, std::move(region)), options);
+}
+
+WarpPath warp(const MatrixDView& distances, const WarpOptions& options) {
+    check(options);
+    auto region = warp_region(distances.rows(), distances.cols(), options.steps, options.end_slip);
+    if (!crossable(region)) return {};
+    WarpFront front(distances.cols(), weighted_steps(options), options.radius, true);
+    return best_path(WarpTable(distances, std::move(front), options, std::move(region)), options);
 }
 
 namespace {
@@ -212,12 +228,14 @@ double warp_cost(const MatrixFView& first, const MatrixFView& second, const Warp
         const double mean = warp(first, second, options).mean;
         return mean <= at_most ? mean : infinite;
     }
-    check(first, second, options);
+    check_columns(first, second);
+    check(options);
     if (first.rows() == 0 || second.rows() == 0) return infinite;
     if (options.radius < infinite && !ends_meet(first, second, options)) return infinite;
     auto region = warp_region(first.rows(), second.rows(), options.steps, options.end_slip);
     if (!crossable(region)) return infinite;
-    WarpTable table(first, second, options, std::move(region), false);
+    WarpFront front(second, weighted_steps(options), options.radius, false);
+    WarpTable table(first, std::move(front), options, std::move(region));
     const double weight = weight_of(options.weight, first.rows(), second.rows());
     // A little more than the bound, so that rounding never gives up what the division would let in.
     const double hopeless = at_most * weight * (1 + 1e-12);
@@ -286,7 +304,8 @@ std::vector<Match> without_overlaps(std::vector<Match> matches, int64_t sequence
 
 std::vector<WarpPath> warp_matches(const MatrixFView& query, const MatrixFView& sequence,
                                    const MatchOptions& options) {
-    check(query, sequence, options.steps);
+    check_columns(query, sequence);
+    check(options.steps);
     if (std::ranges::any_of(options.steps, [](const WarpStep& step) { return step.first == 0; })) {
         throw std::invalid_argument("each step of a match must go on in the query");
     }

@@ -13,28 +13,31 @@ constexpr double unreachable = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-WarpFront::WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps, double radius,
+WarpFront::WarpFront(int64_t columns, std::vector<TableStep> steps, double radius,
                      bool with_choices)
-    : columns_(sequence.rows()),
-      dimension_(sequence.cols()),
-      squared_radius_(radius * radius),
-      steps_(std::move(steps)) {
+    : columns_(columns), radius_(radius), steps_(std::move(steps)) {
     for (const TableStep& step : steps_) {
         depth_ = std::max<int64_t>(depth_, step.rows + 1);
         margin_ = std::max<int64_t>(margin_, step.columns);
     }
-    const int64_t block_count = (columns_ + lanes - 1) / lanes;
-    blocks_.resize(static_cast<size_t>(block_count * dimension_ * lanes));
-    for (int64_t j = 0; j < columns_; ++j) {
-        double* const block = blocks_.data() + j / lanes * dimension_ * lanes + j % lanes;
-        for (int64_t c = 0; c < dimension_; ++c) block[c * lanes] = double(sequence(j, c));
-    }
-    distances_.resize(static_cast<size_t>(block_count * lanes));
+    distances_.resize(static_cast<size_t>((columns_ + lanes - 1) / lanes * lanes));
     if (with_choices) choices_.resize(static_cast<size_t>(columns_));
     ring_.assign(static_cast<size_t>(depth_ * (margin_ + columns_)), unreachable);
 }
 
+WarpFront::WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps, double radius,
+                     bool with_choices)
+    : WarpFront(sequence.rows(), std::move(steps), radius, with_choices) {
+    dimension_ = sequence.cols();
+    blocks_.resize(distances_.size() * static_cast<size_t>(dimension_));
+    for (int64_t j = 0; j < columns_; ++j) {
+        double* const block = blocks_.data() + j / lanes * dimension_ * lanes + j % lanes;
+        for (int64_t c = 0; c < dimension_; ++c) block[c * lanes] = double(sequence(j, c));
+    }
+}
+
 void WarpFront::measure(const float* row, const RowRange& columns) {
+    const double squared_radius = radius_ * radius_;
     for (int64_t first = columns.first / lanes * lanes; first < columns.end; first += lanes) {
         const double* const block = blocks_.data() + first * dimension_;
         double squares[lanes] = {};
@@ -47,7 +50,7 @@ void WarpFront::measure(const float* row, const RowRange& columns) {
         }
         for (int64_t lane = 0; lane < lanes; ++lane) {
             distances_[static_cast<size_t>(first + lane)] =
-                squares[lane] <= squared_radius_ ? std::sqrt(squares[lane]) : unreachable;
+                squares[lane] <= squared_radius ? std::sqrt(squares[lane]) : unreachable;
         }
     }
 }
@@ -100,6 +103,17 @@ void WarpFront::come_within(const RowRange& columns, double* totals) {
 
 void WarpFront::advance(const float* row, const RowRange& columns, const TableStart& start) {
     measure(row, columns);
+    find_totals(columns, start);
+}
+
+void WarpFront::advance(const double* distances, const RowRange& columns, const TableStart& start) {
+    for (int64_t j = columns.first; j < columns.end; ++j) {
+        distances_[static_cast<size_t>(j)] = distances[j] <= radius_ ? distances[j] : unreachable;
+    }
+    find_totals(columns, start);
+}
+
+void WarpFront::find_totals(const RowRange& columns, const TableStart& start) {
     double* const totals = ring_.data() + (ring_row(rows_) - ring_.data());
     begin(columns, start, totals);
     for (size_t s = 0; s < steps_.size(); ++s) {

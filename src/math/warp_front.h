@@ -32,9 +32,13 @@ class WarpFront {
     /// distance is greater than the radius.
     WarpFront(const MatrixFView& sequence, std::vector<TableStep> steps, double radius,
               bool with_choices);
+    /// Of a table whose distances are given row by row.
+    WarpFront(int64_t columns, std::vector<TableStep> steps, double radius, bool with_choices);
 
     /// Computes the next row of the table in the given columns, and leaves the others unreachable.
     void advance(const float* row, const RowRange& columns, const TableStart& start);
+    /// The same from the distances of its cells.
+    void advance(const double* distances, const RowRange& columns, const TableStart& start);
 
     /// Of the row `back` rows before the latest, which is less than depth(): the least cost of a
     /// path to each column, infinite where there is none.
@@ -54,13 +58,14 @@ class WarpFront {
 
   private:
     void measure(const float* row, const RowRange& columns);
+    void find_totals(const RowRange& columns, const TableStart& start);
     const double* ring_row(int64_t row) const;
     void begin(const RowRange& columns, const TableStart& start, double* totals);
     void come_by(size_t step, const RowRange& columns, double* totals);
     void come_within(const RowRange& columns, double* totals);
 
-    int64_t columns_, dimension_;
-    double squared_radius_;
+    int64_t columns_, dimension_ = 0;
+    double radius_;
     std::vector<TableStep> steps_;
     int64_t depth_ = 1, margin_ = 0;
     int64_t rows_ = 0;

@@ -121,6 +121,21 @@ TEST_CASE("no path costs less than the one found") {
     }
 }
 
+TEST_CASE("distances that are given lead to the same path as the rows they are of") {
+    for (const WarpOptions& options : every_kind()) {
+        const MatrixF first = wandering(7, 3, 1), second = wandering(9, 3, 2);
+        MatrixD distances(7, 9);
+        for (int64_t i = 0; i < 7; ++i) {
+            for (int64_t j = 0; j < 9; ++j) distances(i, j) = distance(first, i, second, j);
+        }
+        const WarpPath expected = warp(first, second, options), path = warp(distances, options);
+        CHECK(path.cells == expected.cells);
+        CHECK(path.total == expected.total);
+        CHECK(path.mean == expected.mean);
+    }
+    CHECK(warp(MatrixD(0, 3)).cells.empty());
+}
+
 TEST_CASE("giving up early leaves out only what costs more than the bound") {
     int64_t found = 0, given_up = 0;
     for (const WarpOptions& options : every_kind()) {

@@ -68,6 +68,9 @@ struct WarpPath {
 /// n · m bytes.
 WarpPath warp(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options = {});
 
+/// The same where the n × m distances between the rows of the two are given.
+WarpPath warp(const MatrixDView& distances, const WarpOptions& options = {});
+
 /// The mean cost of that path where it is no more than `at_most`, else infinite: a search that can
 /// no longer come to less is given up. Memory grows with m alone.
 double warp_cost(const MatrixFView& first, const MatrixFView& second, const WarpOptions& options,
