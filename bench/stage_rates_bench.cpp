@@ -224,7 +224,9 @@ enum StageNumber : size_t {
     features_stage,
     pose_clusters_stage,
     strings_stage,
-    neighbors_stage
+    neighbors_stage,
+    segments_stage,
+    primitives_stage
 };
 
 Rates measure(const Options& options) {
@@ -262,6 +264,9 @@ Rates measure(const Options& options) {
     rates.features =
         shard_rates(features_stage, frames * values_of_features(shape, features, 120.0));
     rates.neighbors = shard_rates(neighbors_stage, 2 * edges_of(opened.generation));
+    const double graph_frames = frames * features.effector_rate / 120.0;
+    rates.segments = shard_rates(segments_stage, graph_frames);
+    rates.primitives = shard_rates(primitives_stage, graph_frames);
 
     const auto per_row = [&](StageNumber stage) {
         return nanoseconds(std::max(0.0, one[stage].cpu - empty[stage].cpu), count);

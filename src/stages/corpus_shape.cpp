@@ -185,4 +185,8 @@ std::vector<PartitionShape> partition_shapes(const CorpusShape& corpus,
     return partitions;
 }
 
+bool goes_through_takes(std::string_view stage) {
+    return stage == "segments" || stage == "primitives";
+}
+
 }  // namespace kinetome

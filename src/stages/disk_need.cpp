@@ -17,6 +17,7 @@ namespace {
 
 /// Of real motion, before it is known; the file is small beside the sharded ones.
 constexpr int64_t typical_frames_per_letter = 15;
+constexpr double typical_segment_seconds = 5, typical_primitive_seconds = 1.5;
 
 /// Bytes of datasets that are there once a class or a partition.
 class Group {
@@ -95,6 +96,25 @@ uint64_t motion_strings_bytes(const PartitionShape& partition) {
         .rows(clusters, {(clusters + word_bits - 1) / word_bits * number})
         .rows(1, {number, number, number})
         .bytes();
+}
+
+/// write_segments and write_primitives.
+uint64_t take_cuts_bytes(const std::string& stage, const CorpusShape& corpus,
+                         const ReindexOptions& options) {
+    const auto clips = static_cast<int64_t>(corpus.clips.size());
+    const bool primitives = stage == "primitives";
+    double seconds = 0;
+    for (const ClipShape& clip : corpus.clips) {
+        seconds += static_cast<double>(clip.frames_at(options.features.effector_rate)) /
+                   options.features.effector_rate;
+    }
+    const double typical = primitives ? typical_primitive_seconds : typical_segment_seconds;
+    const auto cuts = clips + static_cast<int64_t>(seconds / typical);
+    Group group;
+    group.rows(1, {number}).rows(clips, {number, name, 2 * name, number, number, number});
+    group.rows(cuts, {number, index, index, index, index});
+    if (primitives) group.rows(cuts, {index});
+    return group.bytes();
 }
 
 /// Clips and rows of one class in a shard.
@@ -191,6 +211,7 @@ DiskNeed texts(const RunPlan& plan) {
 uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
                         const ReindexOptions& options) {
     if (stage_named(stage).sharded) return shard_bytes(stage, cut, corpus, options);
+    if (goes_through_takes(stage)) return take_cuts_bytes(stage, corpus, options);
     uint64_t bytes = 0;
     for (const PartitionShape& partition : partition_shapes(corpus, options)) {
         if (stage == "pose_clusters") {

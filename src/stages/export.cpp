@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "kinetome/base/csv.h"
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
+#include "kinetome/stages/segment_file.h"
 #include "kinetome/store/json_text.h"
+#include "kinetome/store/neighbor_store.h"
 
 namespace kinetome {
 namespace {
@@ -120,10 +123,81 @@ Table letter_table(const Generation& generation) {
     return table;
 }
 
+Table segment_table(const Generation& generation) {
+    Table table{{"clip", "first", "end", "kind", "activity_cluster"}, {}};
+    const ArtifactReader file = generation.open("segments.h5");
+    const double rate = effector_rate_of(file);
+    for (const SegmentedClip& clip : read_segments(file)) {
+        for (const Segment& segment : clip.segments) {
+            table.rows.push_back({clip.clip.name,
+                                  source_boundary(clip.clip, segment.frames.first, rate),
+                                  source_boundary(clip.clip, segment.frames.end, rate),
+                                  segment.kind == SegmentKind::activity ? "activity" : "transition",
+                                  int64_t{segment.cluster}});
+        }
+    }
+    return table;
+}
+
+Table primitive_table(const Generation& generation) {
+    Table table{{"clip", "first", "end", "activity_first", "cluster", "label"}, {}};
+    const ArtifactReader file = generation.open("primitives.h5");
+    const double rate = effector_rate_of(file);
+    const std::vector<SegmentedClip> segmented = read_segments(generation.open("segments.h5"));
+    auto activities = segmented.begin();
+    for (const PrimitiveClip& clip : read_primitives(file)) {
+        while (activities->clip.name != clip.clip.name) ++activities;
+        for (const StoredPrimitive& stored : clip.primitives) {
+            const Primitive& primitive = stored.primitive;
+            const Segment& activity =
+                activities->segments.at(static_cast<size_t>(primitive.activity));
+            table.rows.push_back({clip.clip.name,
+                                  source_boundary(clip.clip, primitive.frames.first, rate),
+                                  source_boundary(clip.clip, primitive.frames.end, rate),
+                                  source_boundary(clip.clip, activity.frames.first, rate),
+                                  int64_t{stored.cluster}, ""});
+        }
+    }
+    return table;
+}
+
+Table neighbor_table(const Generation& generation) {
+    Table table{{"clip", "frame", "neighbour", "distance"}, {}};
+    std::map<std::string, std::vector<std::vector<Table::Cell>>> rows_of;  // by clip name
+    for (const Receipt* receipt : generation.ledger().of_stage("neighbors")) {
+        const NeighborShardReader shard(generation.open(receipt->file.file_name));
+        for (size_t i = 0; i < shard.clips().size(); ++i) {
+            const NeighborClip& clip = shard.clips()[i].clip;
+            const double rate = shard.effector_rate(clip.clip_class);
+            const auto in_source = [&](int64_t frame) {
+                return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, rate)));
+            };
+            const StoredNeighbors graph = shard.read(i);
+            auto& rows = rows_of[clip.name];
+            for (size_t frame = 0; frame + 1 < graph.offsets.size(); ++frame) {
+                for (auto e = static_cast<size_t>(graph.offsets[frame]);
+                     e < static_cast<size_t>(graph.offsets[frame + 1]); ++e) {
+                    rows.push_back({clip.name, in_source(static_cast<int64_t>(frame)),
+                                    in_source(graph.neighbours[e]),
+                                    static_cast<double>(graph.distances[e])});
+                }
+            }
+        }
+    }
+    for (auto& [name, rows] : rows_of) {
+        std::move(rows.begin(), rows.end(), std::back_inserter(table.rows));
+    }
+    return table;
+}
+
 Table export_table(const Generation& generation, std::string_view what) {
     if (what == "clips") return clip_table(generation);
     if (what == "letters") return letter_table(generation);
-    throw UsageError(fmt::format("cannot export '{}': there are clips, letters", what));
+    if (what == "neighbors") return neighbor_table(generation);
+    if (what == "segments") return segment_table(generation);
+    if (what == "primitives") return primitive_table(generation);
+    throw UsageError(fmt::format(
+        "cannot export '{}': there are clips, letters, neighbors, segments, primitives", what));
 }
 
 }  // namespace kinetome

@@ -133,6 +133,13 @@ constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ra
 constexpr std::array knn_engine_names = {std::pair{"blocks", KnnEngine::blocks},
                                          std::pair{"flann", KnnEngine::flann}};
 
+constexpr std::array activity_method_names = {
+    std::pair{"repetition", ActivityMethod::repetition},
+    std::pair{"region-growing", ActivityMethod::region_growing}};
+constexpr std::array primitive_method_names = {
+    std::pair{"cost-ridges", PrimitiveMethod::cost_ridges},
+    std::pair{"warping-paths", PrimitiveMethod::warping_paths}};
+
 /// One value as the option's text, from whatever TOML type it has.
 std::string toml_text(const std::string& origin, const std::string& name, const toml::node& node) {
     if (const auto value = node.value_exact<std::string>()) return *value;
@@ -163,6 +170,8 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
     PoseClusterOptions& p = o.pose_clusters;
     MixtureOptions& m = p.mixture;
     NeighborOptions& g = o.neighbors;
+    ActivityOptions& a = o.activities;
+    PrimitiveOptions& s = o.primitives;
     return {
         number("amc-rate", "frames", o.frames.amc.rate,
                "frames a second of AMC takes, which do not state it"),
@@ -219,6 +228,24 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "for motion of low amplitude; 0: the same radius for all takes"),
         choice("knn-engine", "neighbors", g.engine, knn_engine_names,
                "that searches neighbours; flann rounds"),
+        choice("method", "segments", a.method, activity_method_names,
+               "how takes are cut into activities"),
+        number("segment-cost", "segments", a.repetition.segment_cost,
+               "repetitions that one activity more must bring; method repetition"),
+        number("least-repetition", "segments", a.repetition.least_repetition,
+               "repetitions of an activity that is no longer than a transition; method repetition"),
+        number("least-sameness", "segments", a.repetition.least_sameness,
+               "from which two activities of a take are the same; method repetition"),
+        number("longest-transition", "segments", a.longest_transition,
+               "seconds; what does not repeat for longer is an activity"),
+        number("patience", "segments", a.region_growing.patience,
+               "seconds without new neighbours that end an activity; method region-growing"),
+        choice("primitive-method", "segments", s.method, primitive_method_names,
+               "how primitives are found in an activity"),
+        number("shortest-primitive", "segments", s.shortest, "seconds of a primitive, at least"),
+        number("primitive-threshold", "segments", o.primitive_clusters.threshold,
+               "mean distance along the path that warps one primitive to another of its cluster, "
+               "cm, at most"),
     };
 }
 
@@ -226,6 +253,8 @@ ReindexOptions paper_options() {
     ReindexOptions options;
     options.partition.rule = PartitionRule::none;  // S1 clusters each database as a whole
     options.neighbors.knn.radius = 64;             // S3 §5
+    options.activities.method = ActivityMethod::region_growing;  // S3 §3.1
+    options.primitives.method = PrimitiveMethod::warping_paths;  // S3 §3.2
     return options;
 }
 
@@ -313,6 +342,14 @@ void check_options(const ReindexOptions& o) {
     require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
     require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");
     require(o.neighbors.adapt_radius >= 0, "adapt-radius must not be negative");
+    require(o.activities.repetition.segment_cost >= 0 &&
+                o.activities.repetition.least_repetition >= 0 &&
+                o.activities.repetition.least_sameness >= 0,
+            "segment-cost, least-repetition and least-sameness must not be negative");
+    require(o.activities.longest_transition >= 0 && o.activities.region_growing.patience > 0,
+            "longest-transition must not be negative, patience must be above 0");
+    require(o.primitives.shortest > 0, "shortest-primitive must be above 0");
+    require(o.primitive_clusters.threshold >= 0, "primitive-threshold must not be negative");
     try {
         const std::regex expression(o.partition.subject_from);
         require(o.partition.subject_from.empty() || expression.mark_count() >= 1,

@@ -22,7 +22,7 @@ uint64_t bytes_of(double values) {
 /// A clip on its way.
 uint64_t clip_bytes(const std::string& stage, const ClipShape& clip, const ClassShape& shape,
                     const ReindexOptions& options) {
-    if (stage == "neighbors") {
+    if (stage == "neighbors" || goes_through_takes(stage)) {
         return neighbor_graph_bytes(clip.frames_at(options.features.effector_rate),
                                     3 * effector_values, options.neighbors.knn);
     }
@@ -49,6 +49,15 @@ uint64_t pipeline_bytes(const std::string& stage, const CorpusShape& corpus,
     const auto parsing = static_cast<size_t>(resources.threads);
     for (size_t i = 0; i < std::min(parsing, sources.size()); ++i) bytes += sources[i];
     return bytes;
+}
+
+/// Features of all takes side by side, in which rank 0 compares primitives of different takes.
+uint64_t graph_feature_bytes(const CorpusShape& corpus, const ReindexOptions& options) {
+    double frames = 0;
+    for (const ClipShape& clip : corpus.clips) {
+        frames += static_cast<double>(clip.frames_at(options.features.effector_rate));
+    }
+    return bytes_of(frames * 3 * effector_values);
 }
 
 /// What rank 0 holds of every partition until the file is written.
@@ -78,6 +87,10 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
     const uint64_t at_rest = program_bytes + corpus.clips.size() * bytes_per_clip;
     if (stage_named(stage).sharded) {
         return at_rest + pipeline_bytes(stage, corpus, options, resources);
+    }
+    if (goes_through_takes(stage)) {
+        const uint64_t takes = at_rest + pipeline_bytes(stage, corpus, options, resources);
+        return stage == "primitives" ? takes + graph_feature_bytes(corpus, options) : takes;
     }
     const auto partitions = partition_shapes(corpus, options);
     std::vector<int64_t> rows;

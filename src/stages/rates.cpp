@@ -81,8 +81,8 @@ class RatesFile {
     }
 
     Rates read() const {
-        require_known(
-            table_, {"machine", "version", "threads", "frames", "features", "poses", "neighbors"});
+        require_known(table_, {"machine", "version", "threads", "frames", "features", "poses",
+                               "neighbors", "segments", "primitives"});
         Rates rates;
         rates.machine = table_["machine"].value_or(std::string());
         rates.version = table_["version"].value_or(std::string());
@@ -92,6 +92,8 @@ class RatesFile {
         rates.poses = section<PoseRates>(table_, "poses", pose_fields, more_pose_keys);
         rates.poses.by_clusters = mixtures();
         rates.neighbors = section<ShardRates>(table_, "neighbors", shard_fields);
+        rates.segments = section<ShardRates>(table_, "segments", shard_fields);
+        rates.primitives = section<ShardRates>(table_, "primitives", shard_fields);
         return rates;
     }
 
@@ -201,6 +203,8 @@ std::string write_rates(const Rates& rates) {
     text += section_text("[frames]", rates.frames, shard_fields);
     text += section_text("[features]", rates.features, shard_fields);
     text += section_text("[neighbors]", rates.neighbors, shard_fields);
+    text += section_text("[segments]", rates.segments, shard_fields);
+    text += section_text("[primitives]", rates.primitives, shard_fields);
     text += section_text("[poses]", rates.poses, pose_fields);
     for (const ClusterRates& one : rates.poses.by_clusters) {
         text += section_text("[[poses.mixture]]", one, cluster_fields);

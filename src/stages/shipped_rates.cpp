@@ -27,6 +27,16 @@ seconds_per_file = 0.006
 nanoseconds_per_value = 75.0
 serial_share = 0.1
 
+[segments]
+seconds_per_file = 0.005
+nanoseconds_per_value = 20000.0
+serial_share = 0.1
+
+[primitives]
+seconds_per_file = 0.005
+nanoseconds_per_value = 30000.0
+serial_share = 0.2
+
 [poses]
 seconds_per_file = 0.004646
 moments_nanoseconds_per_row = 509.6

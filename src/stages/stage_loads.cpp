@@ -73,7 +73,24 @@ LoadItem strings_item(const PartitionShape& partition, const PoseRates& rates) {
 
 const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
     if (stage == "frames") return rates.frames;
+    if (stage == "segments") return rates.segments;
+    if (stage == "primitives") return rates.primitives;
     return stage == "features" ? rates.features : rates.neighbors;
+}
+
+/// A stage that makes one file of what ranks find out take by take.
+StageLoad load_of_takes(const ShardRates& each, const CorpusShape& corpus,
+                        const ReindexOptions& options) {
+    StageLoad load;
+    load.serial_share = each.serial_share;
+    for (const ClipShape& clip : corpus.clips) {
+        LoadItem item;
+        item.amount = clip.frames_at(options.features.effector_rate);
+        item.seconds = static_cast<double>(item.amount) * each.nanoseconds_per_value * nanosecond;
+        load.items.push_back(item);
+    }
+    if (!load.items.empty()) load.items.front().fixed_seconds = each.seconds_per_file;
+    return load;
 }
 
 /// Numbers that a sharded stage writes of a clip.
@@ -118,6 +135,9 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
             load.items.push_back(shard_item(stage, cut, corpus, options, rates));
         }
         return load;
+    }
+    if (goes_through_takes(stage)) {
+        return load_of_takes(shard_rates(stage, rates), corpus, options);
     }
     load.serial_share = rates.poses.serial_share;
     load.shares_items = true;

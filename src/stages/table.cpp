@@ -38,6 +38,18 @@ const std::vector<StageRow>& stage_table() {
          .format_version = 1,
          .description = "the neighbourhood graph of each take (S3 §3)",
          .make = make_neighbors},
+        {.name = "segments",
+         .inputs = {"features", "neighbors"},
+         .sharded = false,
+         .format_version = 1,
+         .description = "takes cut into activities and transitions (S3 §3.1)",
+         .make = make_segments},
+        {.name = "primitives",
+         .inputs = {"features", "neighbors", "segments"},
+         .sharded = false,
+         .format_version = 1,
+         .description = "executions of movements, and which are the same (S3 §3.2, §4)",
+         .make = make_primitives},
     };
     return table;
 }

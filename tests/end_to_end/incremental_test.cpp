@@ -56,6 +56,8 @@ Names from_stage_on(const StoreOnDisk& store, const std::string& stage) {
     const std::map<std::string, std::vector<std::string>> made_of = {
         {"frames", {"features"}},
         {"features", {"pose_clusters", "neighbors"}},
+        {"neighbors", {"segments"}},
+        {"segments", {"primitives"}},
         {"pose_clusters", {"motion_strings"}}};
     Names names = store.artifacts(stage);
     const auto next = made_of.find(stage);
@@ -165,6 +167,8 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
              Change{"--longest-submotion", "1", "motion_strings",
                     "option longest-submotion was 1.6666666666666667, is 1"},
              Change{"--radius", "60", "neighbors", "option radius was 72, is 60"},
+             Change{"--method", "region-growing", "segments",
+                    "option method was repetition, is region-growing"},
              Change{"--clusters", "61", "pose_clusters", "option clusters was 60, is 61"},
              Change{"--seed", "9", "pose_clusters", "option seed was"},
              Change{"--partition", "subject", "pose_clusters",

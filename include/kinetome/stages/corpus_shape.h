@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinetome/run/shard_plan.h"
@@ -28,6 +29,9 @@ inline constexpr int64_t effector_values = 15;
 /// Numbers that the artifacts hold of one frame at the source's rate.
 double values_of_frames(const ClassShape& shape);
 double values_of_features(const ClassShape& shape, const FeatureOptions& options, double rate);
+
+/// Whether a stage that makes one file works take by take, not by partitions of poses.
+bool goes_through_takes(std::string_view stage);
 
 struct ClipShape {
     std::string name;

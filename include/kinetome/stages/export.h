@@ -31,6 +31,15 @@ Table clip_table(const Generation& generation);
 /// clip,first,end,letter: frames at the source's rate, from 0, end exclusive.
 Table letter_table(const Generation& generation);
 
+/// clip,frame,neighbour,distance: frames at the source's rate, distance in cm.
+Table neighbor_table(const Generation& generation);
+
+/// clip,first,end,kind,activity_cluster: frames at the source's rate, from 0, end exclusive.
+Table segment_table(const Generation& generation);
+
+/// clip,first,end,activity_first,cluster,label: likewise.
+Table primitive_table(const Generation& generation);
+
 /// WHAT of `export`, by name. Throws UsageError listing what there is.
 Table export_table(const Generation& generation, std::string_view what);
 

@@ -13,7 +13,10 @@
 #include "kinetome/features/effectors.h"
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/math/knn.h"
+#include "kinetome/models/activity.h"
 #include "kinetome/models/pose_clusters.h"
+#include "kinetome/models/primitive.h"
+#include "kinetome/models/primitive_clusters.h"
 #include "kinetome/models/subject_partition.h"
 
 namespace kinetome {
@@ -57,6 +60,9 @@ struct ReindexOptions {
     PoseClusterOptions pose_clusters;
     StringOptions motion_strings;
     NeighborOptions neighbors;
+    ActivityOptions activities;
+    PrimitiveOptions primitives;
+    PrimitiveClusterOptions primitive_clusters;
 };
 
 /// Every option at the paper's value, where the default departs from it (docs/methods.md).

@@ -10,7 +10,7 @@
 
 namespace kinetome {
 
-/// A sharded stage.
+/// A sharded stage, or another one that goes through takes.
 struct ShardRates {
     double seconds_per_file = 0;       ///< to open, sync and hash it, however small
     double nanoseconds_per_value = 0;  ///< written, by one thread
@@ -41,7 +41,9 @@ struct Rates {
     ShardRates frames;
     ShardRates features;
     PoseRates poses;
-    ShardRates neighbors;  ///< a neighbour is two values
+    ShardRates neighbors;   ///< a neighbour is two values
+    ShardRates segments;    ///< of one file; a value is a frame at the effector rate
+    ShardRates primitives;  ///< likewise
 };
 
 /// For any κ: between the logarithms of those measured, beyond them in proportion to κ.

@@ -81,5 +81,7 @@ StageResult make_features(const StageContext& context, const StageTask& task);
 StageResult make_pose_clusters(const StageContext& context, const StageTask& task);
 StageResult make_motion_strings(const StageContext& context, const StageTask& task);
 StageResult make_neighbors(const StageContext& context, const StageTask& task);
+StageResult make_segments(const StageContext& context, const StageTask& task);
+StageResult make_primitives(const StageContext& context, const StageTask& task);
 
 }  // namespace kinetome

@@ -1,0 +1,52 @@
+// segments.h5 and primitives.h5: what takes are cut into (S3), written by their stages and read by
+// all who ask for it. Layout in docs/artifacts.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kinetome/models/segment.h"
+#include "kinetome/store/artifact.h"
+
+namespace kinetome {
+
+/// A clip that was cut; frames of what it is cut into count at the effector rate.
+struct CutClip {
+    std::string name;
+    std::string clip_class;
+    int64_t frames = 0;  ///< at the effector rate
+    int64_t source_frames = 0;
+    double source_rate = 0;  ///< frames a second
+};
+
+struct SegmentedClip {
+    CutClip clip;
+    std::vector<Segment> segments;
+};
+
+struct StoredPrimitive {
+    Primitive primitive;
+    int32_t take_cluster = -1;  ///< among the primitives of its take
+    int32_t cluster = -1;       ///< among those of the corpus
+};
+
+struct PrimitiveClip {
+    CutClip clip;
+    std::vector<StoredPrimitive> primitives;
+};
+
+/// Clips in name order, `rate`: the effector rate.
+void write_segments(ArtifactWriter& file, const std::vector<SegmentedClip>& clips, double rate);
+std::vector<SegmentedClip> read_segments(const ArtifactReader& file);
+
+void write_primitives(ArtifactWriter& file, const std::vector<PrimitiveClip>& clips, double rate);
+std::vector<PrimitiveClip> read_primitives(const ArtifactReader& file);
+
+/// Frames a second that frames count at, of either file.
+double effector_rate_of(const ArtifactReader& file);
+
+/// A boundary at the effector rate as a frame of the source: the first that lies at it or after it.
+int64_t source_boundary(const CutClip& clip, int64_t frame, double effector_rate);
+
+}  // namespace kinetome
