@@ -10,10 +10,10 @@ SegmentationOptions adapted(SegmentationOptions options, double rate, double rad
     options.activities.rate = options.primitives.rate = rate;
     RepetitionOptions& repetition = options.activities.repetition;
     CostRidgeOptions& ridges = options.primitives.cost_ridges;
-    for (double* distance :
-         {&repetition.radius, &repetition.transition_floor,
-          &options.activities.region_growing.radius, &ridges.radius, &ridges.least_ridge,
-          &options.primitives.warping_paths.radius, &options.clusters.threshold}) {
+    for (double* distance : {&repetition.radius, &repetition.transition_floor,
+                             &options.activities.region_growing.radius, &ridges.radius,
+                             &ridges.least_ridge, &options.primitives.warping_paths.radius,
+                             &options.clusters.threshold, &options.clusters.radius}) {
         *distance *= radius_ratio;
     }
     return options;

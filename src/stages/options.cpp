@@ -246,6 +246,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
         number("primitive-threshold", "segments", o.primitive_clusters.threshold,
                "mean distance along the path that warps one primitive to another of its cluster, "
                "cm, at most"),
+        number("share-across", "segments", o.primitive_clusters.share_across,
+               "of the pairs between clusters of different takes: so many must be alike for the "
+               "clusters to be one"),
     };
 }
 
@@ -350,6 +353,8 @@ void check_options(const ReindexOptions& o) {
             "longest-transition must not be negative, patience must be above 0");
     require(o.primitives.shortest > 0, "shortest-primitive must be above 0");
     require(o.primitive_clusters.threshold >= 0, "primitive-threshold must not be negative");
+    require(o.primitive_clusters.share_across >= 0 && o.primitive_clusters.share_across <= 1,
+            "share-across must be in [0, 1]");
     try {
         const std::regex expression(o.partition.subject_from);
         require(o.partition.subject_from.empty() || expression.mark_count() >= 1,

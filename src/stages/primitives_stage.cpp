@@ -59,8 +59,9 @@ std::vector<int32_t> corpus_clusters(const StageContext& context, const GraphTak
         row += rows.rows();
     }
     PrimitiveClusterOptions options = context.options.primitive_clusters;
-    options.threshold =
-        radius_for_effectors(options.threshold, context.options.neighbors.joints.size());
+    for (double* distance : {&options.threshold, &options.radius}) {
+        *distance = radius_for_effectors(*distance, context.options.neighbors.joints.size());
+    }
     return cluster_primitives(features, primitives, options, context.resources.threads);
 }
 

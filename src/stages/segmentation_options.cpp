@@ -11,7 +11,8 @@ SegmentationOptions segmentation_options(const ReindexOptions& options,
                 options.features.effector_rate, take.clip.radius / options.neighbors.knn.radius);
     for (double* radius :
          {&result.activities.repetition.radius, &result.activities.region_growing.radius,
-          &result.primitives.cost_ridges.radius, &result.primitives.warping_paths.radius}) {
+          &result.primitives.cost_ridges.radius, &result.primitives.warping_paths.radius,
+          &result.clusters.radius}) {
         *radius = std::min(*radius, take.clip.radius);  // no graph has longer edges
     }
     return result;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int usage = 64;
 const std::vector<std::string> commands = {"reindex", "ingest", "publish", "generate", "info",
-                                           "verify",  "gc",     "diff",    "export", "evaluate"};
+                                           "verify",  "gc",     "diff",    "export",   "evaluate"};
 
 struct Letter {
     int64_t first, end, letter;
