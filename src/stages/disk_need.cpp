@@ -17,7 +17,7 @@ namespace {
 
 /// Of real motion, before it is known; the file is small beside the sharded ones.
 constexpr int64_t typical_frames_per_letter = 15;
-constexpr double typical_segment_seconds = 5, typical_primitive_seconds = 1.5;
+constexpr double typical_segment_seconds = 9, typical_primitive_seconds = 2.4;
 
 /// Bytes of datasets that are there once a class or a partition.
 class Group {
@@ -111,7 +111,7 @@ uint64_t take_cuts_bytes(const std::string& stage, const CorpusShape& corpus,
     const double typical = primitives ? typical_primitive_seconds : typical_segment_seconds;
     const auto cuts = clips + static_cast<int64_t>(seconds / typical);
     Group group;
-    group.rows(1, {number}).rows(clips, {number, name, 2 * name, number, number, number});
+    group.rows(1, {number}).rows(clips, {number, name, name, number, number, number});
     group.rows(cuts, {number, index, index, index, index});
     if (primitives) group.rows(cuts, {index});
     return group.bytes();
