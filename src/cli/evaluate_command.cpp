@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "command.h"
@@ -12,7 +14,9 @@
 #include "kinetome/report/timeline_svg.h"
 #include "kinetome/stages/aligned_text.h"
 #include "kinetome/stages/evaluation.h"
+#include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_evaluation.h"
+#include "kinetome/stages/stored_evaluation.h"
 
 namespace kinetome::cli {
 namespace {
@@ -20,10 +24,116 @@ namespace {
 namespace fs = std::filesystem;
 
 struct EvaluateFlags {
-    fs::path truth, cycles, segments, primitives, pictures, output;
-    std::string what = "segments", format = "text";
+    fs::path store, truth, cycles, segments, primitives, pictures, output;
+    std::string generation = "current", what = "segments", peer, format = "text";
     double rate = 120;
     EvaluationOptions evaluation;
+};
+
+void add_options(CLI::App& app, EvaluateFlags& flags) {
+    app.add_option("STORE", flags.store, "store to read, unless tables are given");
+    app.add_option("--truth", flags.truth,
+                   "annotated activities: clip,first,end,label,end_lo,end_hi");
+    app.add_option("--what", flags.what,
+                   "segments, primitives, variance (inside clusters of primitives) or recurrence "
+                   "(of poses; needs no annotation)")
+        ->capture_default_str();
+    app.add_option("--segments", flags.segments, "table as export segments writes it");
+    app.add_option("--primitives", flags.primitives, "table as export primitives writes it");
+    app.add_option("--cycles", flags.cycles, "annotated repetitions: clip,first,end,label");
+    app.add_option("--peer", flags.peer,
+                   "also score another method on the takes of STORE: ppca (Barbič et al. 2004)");
+    app.add_option("--rate", flags.rate, "frames a second of tables, where no STORE tells")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("--tolerance", flags.evaluation.boundary_tolerance,
+                   "seconds by which a boundary may miss the zone where it is annotated")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--svg", flags.pictures, "folder for a timeline of each annotated take");
+    app.add_option("--format", flags.format, "text, csv or json")->capture_default_str();
+    app.add_option("-o,--output", flags.output, "file to write (default: standard output)");
+    app.add_option("--generation", flags.generation, "id, the beginning of one, or current");
+}
+
+void require(bool given, const std::string& advice) {
+    if (!given) throw UsageError(advice);
+}
+
+bool is_one_of(const std::string& word, const std::set<std::string>& words) {
+    return words.count(word) > 0;
+}
+
+void check(const EvaluateFlags& flags) {
+    require(is_one_of(flags.what, {"segments", "primitives", "variance", "recurrence"}),
+            "--what " + flags.what + ": expected segments, primitives, variance or recurrence");
+    require(is_one_of(flags.format, {"text", "csv", "json"}),
+            "--format " + flags.format + ": expected text, csv or json");
+    require(is_one_of(flags.peer, {"", "ppca"}), "--peer " + flags.peer + ": expected ppca");
+    require(!flags.truth.empty() || flags.what == "recurrence",
+            "give the annotation to compare with: --truth truth.csv");
+    const bool has_table = (flags.what == "segments" && !flags.segments.empty()) ||
+                           (flags.what == "primitives" && !flags.primitives.empty());
+    require(!flags.store.empty() || has_table,
+            is_one_of(flags.what, {"segments", "primitives"})
+                ? fmt::format("give a STORE, or a table: --{0} {0}.csv", flags.what)
+                : fmt::format("--what {}: give a STORE", flags.what));
+    require(flags.peer.empty() || !flags.store.empty(),
+            "--peer ppca needs the motion of the takes: give a STORE");
+}
+
+/// What the flags name, read when it is asked for.
+class EvaluationInput {
+  public:
+    explicit EvaluationInput(const EvaluateFlags& flags) : flags_(flags) {
+        if (!flags.store.empty()) open_.emplace(flags.store, flags.generation);
+    }
+
+    const Generation& generation() const { return open_->generation; }
+
+    std::vector<TruthRow> truth() const {
+        auto rows = parse_truth_csv(read_source_file(flags_.truth), flags_.truth.string());
+        if (rows.empty()) throw InputError::in_file(flags_.truth.string(), "no clip is annotated");
+        return rows;
+    }
+
+    std::vector<CycleRow> cycles() const {
+        if (flags_.cycles.empty()) return {};
+        return parse_cycles_csv(read_source_file(flags_.cycles), flags_.cycles.string());
+    }
+
+    std::vector<SegmentedTake> segments() const {
+        if (flags_.segments.empty()) return stored_segments(generation());
+        auto takes = parse_segments_csv(read_source_file(flags_.segments), flags_.segments.string(),
+                                        flags_.rate);
+        if (open_) hold_to_store(takes, generation(), flags_.segments.string());
+        return takes;
+    }
+
+    bool has_primitives() const {
+        return !flags_.primitives.empty() || (open_ && flags_.segments.empty());
+    }
+    std::vector<PrimitivesOfTake> primitives() const {
+        if (flags_.primitives.empty()) return stored_primitives(generation());
+        return parse_primitives_csv(read_source_file(flags_.primitives),
+                                    flags_.primitives.string());
+    }
+    /// For messages.
+    std::string primitives_path() const {
+        return flags_.primitives.empty() ? (flags_.store / "current/primitives.h5").string()
+                                         : flags_.primitives.string();
+    }
+
+    std::vector<AnnotatedTake> annotated() const {
+        if (open_ || !flags_.segments.empty()) {
+            return annotate(segments(), truth(), flags_.truth.string());
+        }
+        return annotated_alone(truth(), flags_.truth.string(), flags_.rate);
+    }
+
+  private:
+    const EvaluateFlags& flags_;
+    std::optional<OpenStore> open_;
 };
 
 /// A name for a clip's picture that is no path and no other clip's.
@@ -37,108 +147,79 @@ std::string picture_name(const std::string& clip, std::set<std::string>& taken) 
     return free + ".svg";
 }
 
+using SegmentsByClip = std::map<std::string, std::vector<Segment>>;
+
 void draw(const std::vector<AnnotatedTake>& takes, const std::vector<PrimitivesOfTake>& primitives,
-          const fs::path& folder) {
+          const SegmentsByClip& peer, const fs::path& folder) {
     std::map<std::string, std::vector<RowRange>> primitives_of;
     for (const PrimitivesOfTake& take : primitives) primitives_of[take.clip] = take.primitives;
     fs::create_directories(folder);
     std::set<std::string> taken;
-    for (const AnnotatedTake& one : takes) {
-        const Timeline timeline = {
-            one.take.clip,
-            one.truth.frames(),
-            one.take.rate,
-            {truth_row(one.truth),
-             segment_row("segments", one.take.segments, primitives_of[one.take.clip], one.truth)}};
-        write_file_atomically(folder / picture_name(one.take.clip, taken), timeline_svg(timeline));
+    for (const auto& [take, truth] : takes) {
+        Timeline timeline{take.clip, truth.frames(), take.rate, {truth_row(truth)}};
+        timeline.rows.push_back(
+            segment_row("segments", take.segments, primitives_of[take.clip], truth));
+        if (!peer.empty()) {
+            timeline.rows.push_back(segment_row("PPCA", peer.at(take.clip), {}, truth));
+        }
+        write_file_atomically(folder / picture_name(take.clip, taken), timeline_svg(timeline));
     }
 }
 
-std::vector<PrimitivesOfTake> read_primitives(const EvaluateFlags& flags) {
-    if (flags.primitives.empty()) return {};
-    return parse_primitives_csv(read_source_file(flags.primitives), flags.primitives.string());
+std::string in_format(const Table& machine, const Table& human, const std::string& format) {
+    if (format == "text") return aligned_text(human);
+    return write_table(machine, parse_table_format(format));
 }
 
-std::vector<TruthRow> read_truth(const fs::path& path) {
-    auto rows = parse_truth_csv(read_source_file(path), path.string());
-    if (rows.empty()) throw InputError::in_file(path.string(), "no clip is annotated");
-    return rows;
+std::string segments_report(const EvaluateFlags& flags, const EvaluationInput& input) {
+    const std::vector<AnnotatedTake> takes = input.annotated();
+    SegmentEvaluation evaluation = evaluate_segments(takes, flags.evaluation);
+    SegmentsByClip peer;
+    if (!flags.peer.empty()) {
+        peer = segments_by_ppca(takes, input.generation());
+        const auto of_peer = [&](const AnnotatedTake& take) { return peer.at(take.take.clip); };
+        evaluation.beside.push_back({"PPCA", mean_score(takes, of_peer, flags.evaluation)});
+    }
+    if (!flags.pictures.empty()) {
+        const auto primitives =
+            input.has_primitives() ? input.primitives() : std::vector<PrimitivesOfTake>();
+        draw(takes, primitives, peer, flags.pictures);
+    }
+    return in_format(evaluation_table(evaluation), evaluation_summary(evaluation), flags.format);
 }
 
-std::string segments_report(const EvaluateFlags& flags) {
-    const auto takes =
-        parse_segments_csv(read_source_file(flags.segments), flags.segments.string(), flags.rate);
-    const auto annotated = annotate(takes, read_truth(flags.truth), flags.truth.string());
-    const SegmentEvaluation evaluation = evaluate_segments(annotated, flags.evaluation);
-    if (!flags.pictures.empty()) draw(annotated, read_primitives(flags), flags.pictures);
-    if (flags.format == "text") return aligned_text(evaluation_summary(evaluation));
-    return write_table(evaluation_table(evaluation), parse_table_format(flags.format));
-}
-
-std::string primitives_report(const EvaluateFlags& flags) {
-    const auto annotated =
-        annotated_alone(read_truth(flags.truth), flags.truth.string(), flags.rate);
-    std::vector<CycleRow> cycles;
-    if (!flags.cycles.empty()) {
-        cycles = parse_cycles_csv(read_source_file(flags.cycles), flags.cycles.string());
+std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input) {
+    if (flags.what == "segments") return segments_report(flags, input);
+    Table table;
+    if (flags.what == "recurrence") {
+        table = recurrence_table(stored_recurrence(input.generation()));
+    } else if (flags.what == "primitives") {
+        table = evaluation_table(evaluate_primitives(input.annotated(), input.primitives(),
+                                                     input.primitives_path(), input.cycles(),
+                                                     flags.cycles.string()));
+    } else {
+        std::vector<std::string> clips;
+        for (const AnnotatedTake& take : input.annotated()) clips.push_back(take.take.clip);
+        table = variance_table(stored_cluster_variances(input.generation(), clips));
     }
-    const PrimitiveEvaluation evaluation =
-        evaluate_primitives(annotated, read_primitives(flags), flags.primitives.string(), cycles,
-                            flags.cycles.string());
-    if (flags.format == "text") return aligned_text(evaluation_table(evaluation));
-    return write_table(evaluation_table(evaluation), parse_table_format(flags.format));
-}
-
-void check(const EvaluateFlags& flags) {
-    if (flags.what != "segments" && flags.what != "primitives") {
-        throw UsageError("--what " + flags.what + ": expected segments or primitives");
-    }
-    if (flags.format != "text" && flags.format != "csv" && flags.format != "json") {
-        throw UsageError("--format " + flags.format + ": expected text, csv or json");
-    }
-    if (flags.what == "segments" && flags.segments.empty()) {
-        throw UsageError("give the segments to evaluate: --segments segments.csv");
-    }
-    if (flags.what == "primitives" && flags.primitives.empty()) {
-        throw UsageError("give the primitives to evaluate: --primitives primitives.csv");
-    }
-}
-
-void add_options(CLI::App& app, EvaluateFlags& flags) {
-    app.add_option("--truth", flags.truth,
-                   "annotated activities: clip,first,end,label,end_lo,end_hi")
-        ->required();
-    app.add_option("--what", flags.what, "segments or primitives")->capture_default_str();
-    app.add_option("--segments", flags.segments, "table as `export segments` writes it");
-    app.add_option("--primitives", flags.primitives, "table as `export primitives` writes it");
-    app.add_option("--cycles", flags.cycles, "annotated repetitions: clip,first,end,label");
-    app.add_option("--rate", flags.rate, "frames a second of tables and annotation")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_option("--tolerance", flags.evaluation.boundary_tolerance,
-                   "seconds by which a boundary may miss the zone where it is annotated")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app.add_option("--svg", flags.pictures, "folder for a timeline of each take");
-    app.add_option("--format", flags.format, "text, csv or json")->capture_default_str();
-    app.add_option("-o,--output", flags.output, "file to write (default: standard output)");
+    return in_format(table, table, flags.format);
 }
 
 }  // namespace
 
 Command evaluate_command() {
     return {"evaluate", "compare segments or primitives with annotations",
-            "kinetome evaluate --segments segments.csv --truth truth.csv --svg pictures",
+            "kinetome evaluate motion.store --truth truth.csv --svg pictures",
             [](CLI::App& app) -> Run {
                 auto flags = std::make_shared<EvaluateFlags>();
                 add_options(app, *flags);
                 return [=](const Invocation&) {
                     check(*flags);
-                    const std::string text = flags->what == "segments" ? segments_report(*flags)
-                                                                       : primitives_report(*flags);
+                    const std::string text = report_on(*flags, EvaluationInput(*flags));
                     if (!flags->output.empty()) {
                         write_file_atomically(flags->output, text);
                     } else {
+                        // main flushes and checks
                         std::fwrite(text.data(), 1, text.size(), stdout);
                     }
                     return ExitCode::success;

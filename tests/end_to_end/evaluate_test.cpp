@@ -1,6 +1,7 @@
 // What `evaluate` promises: scores, pictures, and refusals that name file and line.
 #include "program.h"
 #include "support/temporary_folder.h"
+#include "takes.h"
 
 namespace {
 
@@ -90,4 +91,60 @@ TEST_CASE("primitives are counted against annotated cycles", "[evaluate]") {
         require_program({"evaluate", "--what", "primitives", "--primitives", primitives, "--truth",
                          tables.truth, "--cycles", cycles, "--format", "csv"});
     CHECK(contains(result.output, "\ntotal,,2,3,2,0.5,1,1\n"));
+}
+
+TEST_CASE("a store is evaluated as its exported tables are, peers and corpus beside",
+          "[evaluate]") {
+    const TemporaryFolder folder;
+    const fs::path takes = folder / "takes", store = folder / "store";
+    generate_corpus(takes, 6000, 1, 3);
+    const std::string truth = (takes / "truth.csv").string();
+    require_program(reindex(takes, store));
+    const auto evaluate = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), "evaluate");
+        words.insert(words.end(), {"--truth", truth, "--format", "csv"});
+        return require_program(words).output;
+    };
+    const std::string segments = (folder / "segments.csv").string();
+    const std::string primitives = (folder / "primitives.csv").string();
+    require_program({"export", store.string(), "segments", "-o", segments});
+    require_program({"export", store.string(), "primitives", "-o", primitives});
+    const std::string of_store = evaluate({store.string()});
+    CHECK(of_store == evaluate({"--segments", segments}));
+    CHECK(of_store == evaluate({store.string(), "--segments", segments, "--rate", "50"}));
+    CHECK(evaluate({store.string(), "--peer", "ppca"}).starts_with(of_store + "beside,PPCA,"));
+
+    const std::string cycles = (takes / "cycles.csv").string();
+    const std::string counted =
+        evaluate({store.string(), "--what", "primitives", "--cycles", cycles});
+    CHECK(counted ==
+          evaluate({"--primitives", primitives, "--what", "primitives", "--cycles", cycles}));
+    CHECK(contains(counted, "\ntotal,,"));
+    CHECK(evaluate({store.string(), "--what", "variance"}).starts_with("class,cluster,"));
+
+    const CommandResult recurrence =
+        require_program({"evaluate", store.string(), "--what", "recurrence", "--format", "json"});
+    CHECK(contains(recurrence.output, "takes"));
+
+    const fs::path pictures = folder / "pictures";
+    evaluate({store.string(), "--svg", pictures.string()});
+    CHECK(contains(text_of(pictures / "01_01.svg"), "a primitive begins"));
+}
+
+TEST_CASE("a table that does not fit the store is refused", "[evaluate]") {
+    const TemporaryFolder folder;
+    const fs::path takes = folder / "takes", store = folder / "store";
+    generate_corpus(takes, 1500, 1, 3);
+    require_program(reindex(takes, store));
+    const auto refused = [&](const std::string& rows, int exit_code, const std::string& message) {
+        const fs::path table =
+            folder.write("table.csv", "clip,first,end,kind,activity_cluster\n" + rows);
+        const CommandResult result =
+            run_program({"evaluate", store.string(), "--segments", table.string(), "--truth",
+                         (takes / "truth.csv").string()});
+        CHECK(result.exit_code == exit_code);
+        CHECK(contains(result.errors, message));
+    };
+    refused("01_01,0,7,activity,0\n", 65, "table.csv: the segments of clip '01_01' end at frame 7");
+    refused("99_99,0,7,activity,0\n", 64, "no clip '99_99' is indexed");
 }
