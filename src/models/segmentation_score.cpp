@@ -202,10 +202,12 @@ void score_boundaries(const TruthTimeline& truth, std::span<const Segment> segme
                       double tolerance, SegmentationScore& score) {
     const std::vector<RowRange> boundaries = boundaries_of(segments);
     const int64_t found = zones_found(truth.zones, boundaries, tolerance);
-    const auto set = static_cast<int64_t>(boundaries.size());
-    const auto true_ones = static_cast<int64_t>(truth.zones.size());
-    score.boundary_precision = set > 0 ? share(found, set) : 1.0;
-    score.boundary_recall = true_ones > 0 ? share(found, true_ones) : 1.0;
+    SegmentationCounts& counts = score.counts;
+    counts.boundaries = static_cast<int64_t>(boundaries.size());
+    counts.true_boundaries = static_cast<int64_t>(truth.zones.size());
+    counts.boundaries_found = found;
+    score.boundary_precision = boundaries.empty() ? 1.0 : share(found, counts.boundaries);
+    score.boundary_recall = truth.zones.empty() ? 1.0 : share(found, counts.true_boundaries);
 }
 
 }  // namespace
@@ -264,6 +266,9 @@ SegmentationScore average(std::span<const SegmentationScore> scores) {
         mean.counts.classes += score.counts.classes;
         mean.counts.transitions += score.counts.transitions;
         mean.counts.transition_frames += score.counts.transition_frames;
+        mean.counts.boundaries += score.counts.boundaries;
+        mean.counts.true_boundaries += score.counts.true_boundaries;
+        mean.counts.boundaries_found += score.counts.boundaries_found;
     }
     return mean;
 }

@@ -51,8 +51,11 @@ std::vector<NamedScore> score_controls(std::span<const AnnotatedTake> takes,
         draws.push_back(mean_score(takes, at_random, options));
     }
     SegmentationScore random = average(draws);
-    // As many in every draw.
-    if (!draws.empty()) random.counts = draws.front().counts;
+    if (!draws.empty()) {
+        const int64_t found = random.counts.boundaries_found / options.random_draws;
+        random.counts = draws.front().counts;  // the same in every draw, but for …
+        random.counts.boundaries_found = found;
+    }
     const auto truth_itself = [](const AnnotatedTake& take) { return segments_of(take.truth); };
     return {{"a cut every second", cut_every(1)},
             {"a cut every 2 seconds", cut_every(2)},
@@ -143,37 +146,74 @@ SegmentEvaluation evaluate_segments(std::span<const AnnotatedTake> takes,
 }
 
 Table evaluation_table(const SegmentEvaluation& evaluation) {
-    Table table{
-        {"what", "name", "strict", "tolerant", "lenient", "purity", "cluster_purity", "hungarian",
-         "hungarian_without_zones", "boundary_precision", "boundary_recall", "activities",
-         "annotated_activities", "clusters", "classes", "transitions", "transition_share"},
-        {}};
-    for_each_score(evaluation, [&](const char* what, const std::string& name,
-                                   const SegmentationScore& score) {
-        const SegmentationCounts& counts = score.counts;
-        table.rows.push_back({what, name, score.strict, score.tolerant, score.lenient, score.purity,
-                              score.cluster_purity, score.hungarian, score.hungarian_without_zones,
-                              score.boundary_precision, score.boundary_recall, counts.activities,
-                              counts.true_activities, counts.clusters, counts.classes,
-                              counts.transitions, transition_share(counts)});
-    });
+    Table table{{"what",
+                 "name",
+                 "strict",
+                 "tolerant",
+                 "lenient",
+                 "purity",
+                 "cluster_purity",
+                 "hungarian",
+                 "hungarian_without_zones",
+                 "boundary_precision",
+                 "boundary_recall",
+                 "activities",
+                 "annotated_activities",
+                 "clusters",
+                 "classes",
+                 "transitions",
+                 "transition_share",
+                 "boundaries",
+                 "annotated_boundaries",
+                 "boundaries_found"},
+                {}};
+    for_each_score(evaluation,
+                   [&](const char* what, const std::string& name, const SegmentationScore& score) {
+                       const SegmentationCounts& counts = score.counts;
+                       table.rows.push_back({what,
+                                             name,
+                                             score.strict,
+                                             score.tolerant,
+                                             score.lenient,
+                                             score.purity,
+                                             score.cluster_purity,
+                                             score.hungarian,
+                                             score.hungarian_without_zones,
+                                             score.boundary_precision,
+                                             score.boundary_recall,
+                                             counts.activities,
+                                             counts.true_activities,
+                                             counts.clusters,
+                                             counts.classes,
+                                             counts.transitions,
+                                             transition_share(counts),
+                                             counts.boundaries,
+                                             counts.true_boundaries,
+                                             counts.boundaries_found});
+                   });
     return table;
 }
 
 Table evaluation_summary(const SegmentEvaluation& evaluation) {
-    Table table{{"", "strict", "tolerant", "lenient", "purity", "of clusters", "Hungarian",
-                 "no zones", "boundary P", "boundary R", "activities", "clusters", "transitions"},
-                {}};
+    Table table{
+        {"", "strict", "tolerant", "purity", "of clusters", "Hungarian", "no zones", "boundary P",
+         "boundary R", "found/set/true", "activities", "clusters", "transitions"},
+        {}};
+    const bool few_takes = evaluation.takes.size() <= 12;
     for_each_score(evaluation, [&](const std::string& what, const std::string& name,
                                    const SegmentationScore& score) {
+        if (what == "mean without" && !few_takes) return;
         const std::string title = what == "mean without" ? what + " " + name
                                   : what == "mean"       ? what
                                                          : name;
         const SegmentationCounts& counts = score.counts;
         table.rows.push_back(
-            {title, score.strict, score.tolerant, score.lenient, score.purity, score.cluster_purity,
+            {title, score.strict, score.tolerant, score.purity, score.cluster_purity,
              score.hungarian, score.hungarian_without_zones, score.boundary_precision,
-             score.boundary_recall, fmt::format("{}/{}", counts.activities, counts.true_activities),
+             score.boundary_recall,
+             fmt::format("{}/{}/{}", counts.boundaries_found, counts.boundaries,
+                         counts.true_boundaries),
+             fmt::format("{}/{}", counts.activities, counts.true_activities),
              fmt::format("{}/{}", counts.clusters, counts.classes),
              fmt::format("{} ({:.1f} %)", counts.transitions, 100 * transition_share(counts))});
     });

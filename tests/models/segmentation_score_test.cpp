@@ -49,7 +49,10 @@ TEST_CASE("frames are counted as by hand") {
                                              .clusters = 2,
                                              .classes = 2,
                                              .transitions = 1,
-                                             .transition_frames = 20});
+                                             .transition_frames = 20,
+                                             .boundaries = 2,
+                                             .true_boundaries = 2,
+                                             .boundaries_found = 1});
 }
 
 TEST_CASE("a class is given to one cluster only, so that cutting finely does not pay") {

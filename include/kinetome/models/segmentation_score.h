@@ -21,6 +21,7 @@ struct SegmentationCounts {
     int64_t activities = 0, true_activities = 0;
     int64_t clusters = 0, classes = 0;
     int64_t transitions = 0, transition_frames = 0;
+    int64_t boundaries = 0, true_boundaries = 0, boundaries_found = 0;
     bool operator==(const SegmentationCounts&) const = default;
 };
 

@@ -56,7 +56,8 @@ SegmentationScore mean_score(std::span<const AnnotatedTake> takes,
 /// what,name and one column a figure; what is take, mean, mean without or beside.
 Table evaluation_table(const SegmentEvaluation& evaluation);
 
-/// The same to be read: found and annotated numbers side by side.
+/// The same to be read: found and annotated numbers side by side; means without single takes only
+/// where there are few takes.
 Table evaluation_summary(const SegmentEvaluation& evaluation);
 
 }  // namespace kinetome
