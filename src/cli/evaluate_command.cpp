@@ -156,7 +156,7 @@ void draw(const std::vector<AnnotatedTake>& takes, const std::vector<PrimitivesO
     fs::create_directories(folder);
     std::set<std::string> taken;
     for (const auto& [take, truth] : takes) {
-        Timeline timeline{take.clip, truth.frames(), take.rate, {truth_row(truth)}};
+        Timeline timeline{take.clip, truth.frames(), take.rate, {truth_row(truth)}, truth.classes};
         timeline.rows.push_back(
             segment_row("segments", take.segments, primitives_of[take.clip], truth));
         if (!peer.empty()) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 #include "kinetome/report/xml_text.h"
 
@@ -186,7 +185,7 @@ class TimelinePicture {
         }
     }
 
-    /// Of what the first row shows, and of the marks there are. Returns where it ends.
+    /// Of colours that have names, and of the marks there are. Returns where it ends.
     double draw_legend(double y) {
         double x = left_;
         const auto entry = [&](const std::string& name, const auto& draw_swatch) {
@@ -202,7 +201,9 @@ class TimelinePicture {
         const auto bar_entry = [&](const std::string& name, std::optional<int32_t> colour) {
             entry(name, [&] { body_ += filled_rect(x, y, 16, 16, colour); });
         };
-        for (const auto& [colour, name] : names_of_first_row()) bar_entry(name, colour);
+        for (size_t colour = 0; colour < timeline_.colour_names.size(); ++colour) {
+            bar_entry(timeline_.colour_names[colour], static_cast<int32_t>(colour));
+        }
         if (has_transitions()) bar_entry("transition", std::nullopt);
         if (has(&TimelineRow::uncertain)) {
             entry("boundary uncertain", [&] { draw_zone(x, y, 16, 16); });
@@ -211,15 +212,6 @@ class TimelinePicture {
             entry("a primitive begins", [&] { draw_tick(x + 8, y + 3); });
         }
         return y + legend_line;
-    }
-
-    std::map<int32_t, std::string> names_of_first_row() const {
-        std::map<int32_t, std::string> names;
-        if (timeline_.rows.empty()) return names;
-        for (const TimelineBar& bar : timeline_.rows.front().bars) {
-            if (bar.colour) names.try_emplace(*bar.colour, bar.name);
-        }
-        return names;
     }
 
     bool has_transitions() const {

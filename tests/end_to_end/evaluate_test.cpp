@@ -126,6 +126,11 @@ TEST_CASE("a store is evaluated as its exported tables are, peers and corpus bes
         require_program({"evaluate", store.string(), "--what", "recurrence", "--format", "json"});
     CHECK(contains(recurrence.output, "takes"));
 
+    const std::string timeline = require_program({"export", store.string(), "timeline"}).output;
+    CHECK(timeline.starts_with("<svg "));
+    CHECK(contains(timeline, ">01_01</text>"));
+    CHECK(run_program({"export", store.string(), "timeline", "--format", "csv"}).exit_code == 64);
+
     const fs::path pictures = folder / "pictures";
     evaluate({store.string(), "--svg", pictures.string()});
     CHECK(contains(text_of(pictures / "01_01.svg"), "a primitive begins"));

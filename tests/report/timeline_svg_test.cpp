@@ -37,7 +37,8 @@ Timeline toy_timeline() {
             960,
             120,
             {truth_row(toy_truth()),
-             segment_row("repetition", toy_segments(), primitives, toy_truth())}};
+             segment_row("repetition", toy_segments(), primitives, toy_truth())},
+            toy_truth().classes};
 }
 
 }  // namespace
@@ -52,6 +53,15 @@ TEST_CASE("a cluster is drawn as the class that agrees with it, others by themse
     CHECK(row.bars[2].name == "#3");
     CHECK(row.bars[3].colour == 1);
     CHECK(row.bars[3].name == "jump");
+}
+
+TEST_CASE("without annotation a cluster is drawn by its number") {
+    const TimelineRow row = segment_row("take", toy_segments(), {});
+    REQUIRE(row.bars.size() == 4);
+    CHECK(row.bars[0].colour == 7);
+    CHECK(row.bars[0].name == "#7");
+    CHECK(row.bars[1].colour == std::nullopt);
+    CHECK(row.bars[3].colour == 4);
 }
 
 TEST_CASE("a tick stands where a primitive begins inside an activity, not at its start") {
@@ -79,6 +89,7 @@ TEST_CASE("one class is of one colour in all rows, two are of two") {
 TEST_CASE("classes beyond the last colour are told apart from the first by dots") {
     Timeline many{"t", 100, 10, {{"row", {}}}};
     for (int32_t i = 0; i < 10; ++i) many.rows[0].bars.push_back({{10 * i, 10 * i + 10}, i, "c"});
+    many.colour_names = std::vector<std::string>(10, "c");
     CHECK(count(timeline_svg(many), "url(#dots)") == 4);  // two bars, two in the legend
 }
 

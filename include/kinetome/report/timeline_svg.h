@@ -33,6 +33,7 @@ struct Timeline {
     int64_t frames = 0;
     double rate = 120;  ///< frames a second
     std::vector<TimelineRow> rows;
+    std::vector<std::string> colour_names = {};  ///< of the first colour numbers, told below
 };
 
 /// Activities in the colours of their classes, zones hatched.
@@ -44,6 +45,10 @@ TimelineRow truth_row(const TruthTimeline& truth);
 /// `segments` and `primitives` count frames as `truth` does.
 TimelineRow segment_row(const std::string& name, std::span<const Segment> segments,
                         std::span<const RowRange> primitives, const TruthTimeline& truth);
+
+/// Where there is no annotation: clusters have their own numbers and colours.
+TimelineRow segment_row(const std::string& name, std::span<const Segment> segments,
+                        std::span<const RowRange> primitives);
 
 /// One self-contained picture, the same text for the same timeline. Colours are told apart without
 /// colour vision, and never carry a meaning alone.
