@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "boundaries.h"
 #include "frame_count.h"
 #include "recurrence.h"
 #include "region_growing.h"
@@ -12,15 +13,17 @@
 namespace kinetome {
 namespace {
 
+/// What does not repeat and is short is a transition, if it lies between others.
 std::vector<Segment> repetitive_segments(const Recurrence& recurrence,
                                          const RepetitionOptions& options,
                                          int64_t longest_transition) {
     std::vector<Segment> segments;
-    for (const ScoredSegment& found : repetition_cuts(recurrence, options.segment_cost)) {
-        const bool is_transition = found.repetitions < options.least_repetition &&
-                                   found.frames.size() < longest_transition;
+    for (const auto& [frames, repetitions] : repetition_cuts(recurrence, options.segment_cost)) {
+        const bool is_between = frames.first > 0 && frames.end < recurrence.size();
+        const bool is_transition = is_between && repetitions < options.least_repetition &&
+                                   frames.size() < longest_transition;
         segments.push_back(
-            {found.frames, is_transition ? SegmentKind::transition : SegmentKind::activity, -1});
+            {frames, is_transition ? SegmentKind::transition : SegmentKind::activity, -1});
     }
     return segments;
 }
@@ -33,7 +36,10 @@ std::vector<Segment> repetitive_activities(const NeighborGraph& graph, const Mat
     const std::vector<Segment> activities =
         joined_activities(repetitive_segments(recurring, options, longest_transition), recurring,
                           options.least_sameness);
-    return with_transitions(activities, features, recurring, options, rate);
+    std::vector<Segment> segments =
+        with_transitions(activities, features, recurring, options, rate);
+    refine_boundaries(segments, features, options, rate);
+    return segments;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "../../src/models/boundaries.h"
 #include "../../src/models/recurrence.h"
 #include "../../src/models/repetition_cuts.h"
 #include "toy_motion.h"
@@ -140,6 +141,47 @@ TEST_CASE("what happens once, for longer than a transition, is an activity of it
     check_cover(with_transition, shorter.rows());
     REQUIRE(with_transition.size() == 3);
     CHECK(with_transition[1].kind == SegmentKind::transition);
+}
+
+TEST_CASE("a short movement at the end of a take is an activity, not a transition to nothing") {
+    const MatrixF rows = toy::Motion().circle(4, 30, 0).raise(1, 40, 4, 600).rows();
+    const auto segments = activities_of(rows, ActivityMethod::repetition);
+    check_cover(segments, rows.rows());
+    REQUIRE(segments.size() == 2);
+    CHECK(segments[1].kind == SegmentKind::activity);
+    CHECK(segments[1].cluster != segments[0].cluster);
+}
+
+TEST_CASE("a boundary is moved to where the frames are likest their own activities") {
+    const MatrixF rows = toy::Motion().circle(4, 30, 0).circle(4, 30, 2).rows();
+    for (const int64_t shift : {-9, -4, 0, 5, 10}) {
+        CAPTURE(shift);
+        std::vector<Segment> segments{{{0, 120 + shift}, SegmentKind::activity, 0},
+                                      {{120 + shift, 240}, SegmentKind::activity, 1}};
+        refine_boundaries(segments, rows, {}, 30);
+        CHECK(near(segments[0].frames.end, 120, 2));
+        CHECK(segments[1].frames.first == segments[0].frames.end);
+    }
+    // No further than its reach, and never where a transition lies between.
+    std::vector<Segment> far{{{0, 90}, SegmentKind::activity, 0},
+                             {{90, 240}, SegmentKind::activity, 1}};
+    refine_boundaries(far, rows, {}, 30);
+    CHECK(far[0].frames.end == 100);
+    std::vector<Segment> apart{{{0, 125}, SegmentKind::activity, 0},
+                               {{125, 126}, SegmentKind::transition, -1},
+                               {{126, 240}, SegmentKind::activity, 1}};
+    const std::vector<Segment> before = apart;
+    refine_boundaries(apart, rows, {}, 30);
+    CHECK(apart == before);
+}
+
+TEST_CASE("boundaries of activities of a frame or two stay within them") {
+    const MatrixF rows = toy::Motion().circle(1, 4, 0).rows();
+    std::vector<Segment> segments{{{0, 1}, SegmentKind::activity, 0},
+                                  {{1, 2}, SegmentKind::activity, 1},
+                                  {{2, 4}, SegmentKind::activity, 0}};
+    refine_boundaries(segments, rows, {}, 30);
+    check_cover(segments, 4);
 }
 
 TEST_CASE("takes without motion, without repetition or without frames are cut as well") {
