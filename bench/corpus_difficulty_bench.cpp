@@ -21,19 +21,14 @@
 #include <vector>
 
 #include "kinetome/base/digest.h"
-#include "kinetome/base/file.h"
 #include "kinetome/base/parallel.h"
 #include "kinetome/base/pieces.h"
-#include "kinetome/features/effectors.h"
 #include "kinetome/features/pose_vector.h"
-#include "kinetome/formats/asf_amc.h"
-#include "kinetome/formats/joint_roles.h"
-#include "kinetome/formats/kinematics.h"
-#include "kinetome/formats/resample.h"
 #include "kinetome/math/moments.h"
 #include "kinetome/math/pca.h"
 #include "kinetome/models/motion_string.h"
 #include "kinetome/models/pose_clusters.h"
+#include "takes.h"
 
 namespace {
 
@@ -61,16 +56,9 @@ struct Corpus {
 
 constexpr double analysis_rate = 30;
 
-MatrixF stacked_effectors(const Clip& clip) {
-    const Clip slow = resample(clip, analysis_rate);
-    return stack_neighbours(effector_positions(*slow.skeleton, slow.motion, joint_positions(slow)));
-}
-
 /// Takes in the order of their names' hashes: any first part of them is a fair sample.
 Corpus read_corpus(const fs::path& folder, int threads) {
-    std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-        if (entry.path().extension() == ".amc") files.push_back(entry.path());
+    std::vector<fs::path> files = bench::amc_files(folder);
     const auto order = [](const fs::path& file) {
         return std::pair(hash_name(file.stem().string()), file.string());
     };
@@ -81,24 +69,18 @@ Corpus read_corpus(const fs::path& folder, int threads) {
     std::vector<VectorD> floors(files.size());
     parallel_for(threads, static_cast<int64_t>(files.size()), [&](int64_t i) {
         const fs::path& file = files[static_cast<size_t>(i)];
-        const fs::path home = file.parent_path();
-        const fs::path asf = home / (home.filename().string() + ".asf");
-        Skeleton skeleton = parse_asf(read_source_file(asf), asf.string());
-        assign_roles(skeleton, asf.string());
-        const Clip clip = parse_amc(read_source_file(file), file.string(),
-                                    std::make_shared<const Skeleton>(std::move(skeleton)));
+        const Clip clip = bench::read_take(file);
         Take& take = corpus.takes[static_cast<size_t>(i)];
         take.name = file.stem().string();
-        take.subject = home.filename().string();
+        take.subject = file.parent_path().filename().string();
         take.poses = pose_vectors(*clip.skeleton, clip.motion, clip.rate);
-        take.stacked = stacked_effectors(clip);
+        take.stacked = bench::stacked_effectors(clip, analysis_rate);
         VectorD& floor = floors[static_cast<size_t>(i)];
         const std::vector<PoseVectorColumn> columns = pose_vector_columns(*clip.skeleton);
         floor.resize(static_cast<Eigen::Index>(columns.size()));
         for (size_t c = 0; c < columns.size(); ++c)
             floor[static_cast<Eigen::Index>(c)] = columns[c].floor;
     });
-    if (files.empty()) throw InputError::in_file(folder.string(), "holds no AMC take");
     corpus.floor = floors.front();
     return corpus;
 }

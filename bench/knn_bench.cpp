@@ -29,16 +29,10 @@
 #include <vector>
 
 #include "cost.h"
-#include "kinetome/base/error.h"
-#include "kinetome/base/file.h"
 #include "kinetome/base/parallel.h"
 #include "kinetome/base/resources.h"
-#include "kinetome/features/effectors.h"
-#include "kinetome/formats/asf_amc.h"
-#include "kinetome/formats/joint_roles.h"
-#include "kinetome/formats/kinematics.h"
-#include "kinetome/formats/resample.h"
 #include "kinetome/math/knn.h"
+#include "takes.h"
 
 namespace {
 
@@ -56,27 +50,13 @@ struct Options {
     float squared_radius() const { return static_cast<float>(knn.radius * knn.radius); }
 };
 
-MatrixF stacked_rows(const fs::path& file, double rate) {
-    const fs::path home = file.parent_path();
-    const fs::path asf = home / (home.filename().string() + ".asf");
-    Skeleton skeleton = parse_asf(read_source_file(asf), asf.string());
-    assign_roles(skeleton, asf.string());
-    const Clip clip = resample(parse_amc(read_source_file(file), file.string(),
-                                         std::make_shared<const Skeleton>(std::move(skeleton))),
-                               rate);
-    return stack_neighbours(effector_positions(*clip.skeleton, clip.motion, joint_positions(clip)),
-                            std::llround(rate / 30));
-}
-
 MatrixF corpus_rows(const fs::path& folder, double rate, int threads) {
-    std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-        if (entry.path().extension() == ".amc") files.push_back(entry.path());
-    if (files.empty()) throw InputError::in_file(folder.string(), "holds no AMC take");
+    std::vector<fs::path> files = bench::amc_files(folder);
     std::ranges::sort(files);
     std::vector<MatrixF> takes(files.size());
-    parallel_for(threads, static_cast<int64_t>(files.size()),
-                 [&](int64_t i) { takes[size_t(i)] = stacked_rows(files[size_t(i)], rate); });
+    parallel_for(threads, static_cast<int64_t>(files.size()), [&](int64_t i) {
+        takes[size_t(i)] = bench::stacked_effectors(bench::read_take(files[size_t(i)]), rate);
+    });
     int64_t count = 0;
     for (const MatrixF& take : takes) count += take.rows();
     MatrixF rows(count, takes.front().cols());
