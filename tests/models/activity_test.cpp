@@ -122,12 +122,8 @@ TEST_CASE("a movement that goes back the way it came is one activity") {
 }
 
 TEST_CASE("what happens once, for longer than a transition, is an activity of its own") {
-    MatrixD path = MatrixD::Zero(100, toy::columns);
-    for (int64_t i = 0; i < 100; ++i) path(i, 4) = 300 + 15 * double(i);
-    const MatrixF before = toy::Motion().circle(4, 30, 0).rows();
-    const MatrixF after = toy::Motion().circle(4, 30, 2).rows();
-    MatrixF rows(before.rows() + path.rows() + after.rows(), toy::columns);
-    rows << before, path.cast<float>(), after;
+    const MatrixF rows =
+        toy::Motion().circle(4, 30, 0).circle(1, 100, 4, 200).circle(4, 30, 2).rows();
     const auto segments = activities_of(rows, ActivityMethod::repetition);
     check_cover(segments, rows.rows());
     REQUIRE(segments.size() == 3);
@@ -135,8 +131,8 @@ TEST_CASE("what happens once, for longer than a transition, is an activity of it
     CHECK(near(segments[1].frames.first, 120, 6));
     CHECK(near(segments[1].frames.end, 220, 6));
 
-    MatrixF shorter(before.rows() + 40 + after.rows(), toy::columns);
-    shorter << before, path.topRows(40).cast<float>(), after;
+    const MatrixF shorter =
+        toy::Motion().circle(4, 30, 0).circle(1, 40, 4, 200).circle(4, 30, 2).rows();
     const auto with_transition = activities_of(shorter, ActivityMethod::repetition);
     check_cover(with_transition, shorter.rows());
     REQUIRE(with_transition.size() == 3);
