@@ -197,7 +197,8 @@ Table export_table(const Generation& generation, std::string_view what) {
     if (what == "segments") return segment_table(generation);
     if (what == "primitives") return primitive_table(generation);
     throw UsageError(fmt::format(
-        "cannot export '{}': there are clips, letters, neighbors, segments, primitives, timeline",
+        "cannot export '{}': there are clips, letters, neighbors, segments, primitives, "
+        "primitive-graph, timeline",
         what));
 }
 

@@ -18,31 +18,26 @@
 namespace kinetome {
 namespace {
 
-/// Names in words, as many as a message can hold.
-std::string listed(const std::set<std::string>& names) {
-    constexpr size_t most = 12;
-    std::string text;
-    size_t count = 0;
-    for (const std::string& name : names) {
-        if (count++ == most) return text + ", …";
-        text += (text.empty() ? "" : ", ") + quote_for_message(name);
-    }
-    return text;
-}
-
-std::set<std::string> names_of(const PrimitiveGraph& primitives,
-                               const std::vector<int32_t>& nodes) {
-    std::set<std::string> names;
+/// Labels of the nodes, and the numbers of clusters without one; as many as a message can hold.
+std::string listed(const PrimitiveGraph& primitives, const std::vector<int32_t>& nodes) {
+    std::set<std::string> labels;
+    std::set<int32_t> clusters;
     for (const int32_t node : nodes) {
         const std::string& label = primitives.label_of[static_cast<size_t>(node)];
         const int32_t cluster = primitives.cluster_of[static_cast<size_t>(node)];
         if (!label.empty()) {
-            names.insert(label);
+            labels.insert(label);
         } else if (cluster >= 0) {
-            names.insert(std::to_string(cluster));
+            clusters.insert(cluster);
         }
     }
-    return names;
+    std::vector<std::string> names;
+    for (const std::string& label : labels) names.push_back(quote_for_message(label));
+    for (const int32_t cluster : clusters) names.push_back(std::to_string(cluster));
+    constexpr size_t most = 12;
+    const bool all = names.size() <= most;
+    if (!all) names.resize(most);
+    return fmt::format("{}{}", fmt::join(names, ", "), all ? "" : ", …");
 }
 
 std::vector<int32_t> all_nodes(const PrimitiveGraph& primitives) {
@@ -58,7 +53,7 @@ std::vector<int32_t> require_nodes(const PrimitiveGraph& primitives, const char*
     if (nodes.empty()) {
         throw UsageError(fmt::format("{} {}: no primitive has this label or cluster; there are {}",
                                      option, quote_for_message(name),
-                                     listed(names_of(primitives, all_nodes(primitives)))));
+                                     listed(primitives, all_nodes(primitives))));
     }
     return nodes;
 }
@@ -72,11 +67,10 @@ void require_path(const PrimitiveGraph& primitives, const WalkOptions& options,
     for (const int32_t node : all_nodes(primitives)) {
         if (reached[static_cast<size_t>(node)]) there.push_back(node);
     }
-    throw UsageError(
-        fmt::format("no path from {} to {}: takes lead from there to {} only; choose "
-                    "--to among these, or leave --from out",
-                    quote_for_message(options.from), quote_for_message(options.to),
-                    listed(names_of(primitives, there))));
+    throw UsageError(fmt::format(
+        "no path from {} to {}: takes lead from there to {} only; choose "
+        "--to among these, or leave --from out",
+        quote_for_message(options.from), quote_for_message(options.to), listed(primitives, there)));
 }
 
 bool is_named(const ClipPrimitive& primitive, const std::string& name) {

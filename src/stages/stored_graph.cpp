@@ -116,7 +116,7 @@ std::string write_dot(const StoredGraph& graph) {
 StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
                          double longest_gap) {
     if (primitives.empty()) {
-        throw UsageError("the store has no primitives; kinetome reindex makes them");
+        throw UsageError("the store has no primitives: nothing in its takes recurs");
     }
     StoredGraph graph;
     std::map<std::string, int32_t> numbers;

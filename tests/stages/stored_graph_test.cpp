@@ -68,3 +68,18 @@ TEST_CASE("the adjacency as DOT quotes what labels hold") {
     CHECK(parse_graph_format("dot") == GraphFormat::dot);
     CHECK_THROWS_AS(parse_graph_format("svg"), UsageError);
 }
+
+TEST_CASE("a primitive has the label that covers most of it, if that is half") {
+    std::vector<ClipPrimitive> primitives = {
+        {"one", 0, 100, 0}, {"one", 100, 200, 0}, {"one", 200, 300, 0, "kept"}, {"two", 0, 100, 0}};
+    label_primitives(primitives, {{"one", 0, 50, "walk"},
+                                  {"one", 100, 130, "walk"},
+                                  {"one", 130, 170, "run"},
+                                  {"one", 170, 200, "walk"},
+                                  {"one", 200, 249, "walk"},
+                                  {"three", 0, 100, "walk"}});
+    CHECK(primitives[0].label == "walk");
+    CHECK(primitives[1].label == "walk");  // 60 of its frames, in two rows
+    CHECK(primitives[2].label == "kept");
+    CHECK(primitives[3].label.empty());
+}

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "kinetome/formats/annotation.h"
 #include "kinetome/formats/clip.h"
 #include "kinetome/models/primitive_graph.h"
+#include "kinetome/stages/open_store.h"
 
 namespace kinetome {
 
@@ -44,6 +46,19 @@ struct StoredGraph {
 /// source.kind does, and UsageError when there are no primitives.
 StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
                          double longest_gap);
+
+/// Gives each primitive the label that covers most of its frames, of equal ones the first by
+/// alphabet, where it covers at least half of them; the others keep theirs. Rows are in frames of
+/// the sources.
+void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<CycleRow>& labels);
+
+/// All primitives of a generation, in the order of clips and frames, labelled by the store's
+/// labels.csv (`clip,first,end,label`) where there is one. Throws UsageError when the generation
+/// has no primitives, InputError for a labels.csv that cannot be read.
+std::vector<ClipPrimitive> stored_primitives(const OpenStore& open);
+
+/// What the generation tells of its clips, whose frames are read from its shards. It outlives this.
+ClipSource clip_source(const Generation& generation);
 
 enum class GraphFormat { csv, json, dot };
 /// Throws UsageError for another name.
