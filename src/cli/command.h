@@ -50,5 +50,6 @@ Command gc_command();
 Command diff_command();
 Command export_command();
 Command evaluate_command();
+Command walk_command();
 
 }  // namespace kinetome::cli

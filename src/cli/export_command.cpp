@@ -7,6 +7,7 @@
 #include "kinetome/report/timeline_svg.h"
 #include "kinetome/stages/export.h"
 #include "kinetome/stages/open_store.h"
+#include "kinetome/stages/primitive_walk.h"
 #include "kinetome/stages/stored_timeline.h"
 
 namespace kinetome::cli {
@@ -17,46 +18,62 @@ struct ExportFlags {
     std::string what, format, generation = "current";
 };
 
+/// --format, or what is usual for the thing exported.
+std::string format_of(const ExportFlags& flags, const std::string& usual) {
+    return flags.format.empty() ? usual : flags.format;
+}
+
 std::string exported(const ExportFlags& flags) {
-    const bool is_picture = flags.what == "timeline";
-    if (is_picture && !flags.format.empty() && flags.format != "svg") {
-        throw UsageError("--format " + flags.format + ": a timeline is svg");
+    if (flags.what == "timeline") {
+        if (format_of(flags, "svg") != "svg") {
+            throw UsageError("--format " + flags.format + ": a timeline is svg");
+        }
+        const OpenStore open(flags.store, flags.generation);
+        return timeline_svg(stored_timeline(open.generation));
     }
-    const TableFormat format =
-        parse_table_format(is_picture || flags.format.empty() ? "csv" : flags.format);
+    if (flags.what == "primitive-graph") {
+        const GraphFormat format = parse_graph_format(format_of(flags, "csv"));
+        const OpenStore open(flags.store, flags.generation);
+        return write_graph(stored_graph(stored_primitives(open), clip_source(open.generation),
+                                        WalkOptions{}.longest_gap),
+                           format);
+    }
+    const TableFormat format = parse_table_format(format_of(flags, "csv"));
     const OpenStore open(flags.store, flags.generation);
-    if (is_picture) return timeline_svg(stored_timeline(open.generation));
     return write_table(export_table(open.generation, flags.what), format);
 }
 
 }  // namespace
 
 Command export_command() {
-    return {"export", "write a table of a store: clips, letters, segments, primitives, …",
-            "kinetome export motion.store letters --format csv -o letters.csv",
-            [](CLI::App& app) -> Run {
-                auto flags = std::make_shared<ExportFlags>();
-                app.add_option("STORE", flags->store, "store to read")->required();
-                app.add_option("WHAT", flags->what,
-                               "clips, letters, neighbors, segments, primitives or timeline")
-                    ->required();
-                app.add_option("--format", flags->format,
-                               "csv or json (default: csv); of a timeline svg");
-                app.add_option("-o,--output", flags->output,
-                               "file to write (default: standard output)");
-                app.add_option("--generation", flags->generation,
-                               "id, the beginning of one, or current");
-                return [=](const Invocation&) {
-                    const std::string text = exported(*flags);
-                    if (!flags->output.empty()) {
-                        write_file_atomically(flags->output, text);
-                    } else {
-                        std::fwrite(text.data(), 1, text.size(),
-                                    stdout);  // main flushes and checks
-                    }
-                    return ExitCode::success;
-                };
-            }};
+    return {
+        "export", "write a table of a store: clips, letters, segments, primitives, …",
+        "kinetome export motion.store letters --format csv -o letters.csv",
+        [](CLI::App& app) -> Run {
+            auto flags = std::make_shared<ExportFlags>();
+            app.add_option("STORE", flags->store, "store to read")->required();
+            app.add_option(
+                   "WHAT", flags->what,
+                   "clips, letters, neighbors, segments, primitives, primitive-graph or timeline")
+                ->required();
+            app.add_option(
+                "--format", flags->format,
+                "csv or json (default: csv); of primitive-graph dot, too; of a timeline svg");
+            app.add_option("-o,--output", flags->output,
+                           "file to write (default: standard output)");
+            app.add_option("--generation", flags->generation,
+                           "id, the beginning of one, or current");
+            return [=](const Invocation&) {
+                const std::string text = exported(*flags);
+                if (!flags->output.empty()) {
+                    write_file_atomically(flags->output, text);
+                } else {
+                    std::fwrite(text.data(), 1, text.size(),
+                                stdout);  // main flushes and checks
+                }
+                return ExitCode::success;
+            };
+        }};
 }
 
 }  // namespace kinetome::cli

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include "command.h"
+#include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/formats/write_amc.h"
+#include "kinetome/formats/write_bvh.h"
+#include "kinetome/stages/open_store.h"
+#include "kinetome/stages/primitive_walk.h"
+
+namespace kinetome::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct WalkFlags {
+    fs::path store, output;
+    std::string graph = "primitives", generation = "current";
+    WalkOptions walk;
+};
+
+enum class MotionFormat { bvh, amc };
+
+MotionFormat format_of(const fs::path& output) {
+    if (output.extension() == ".bvh") return MotionFormat::bvh;
+    if (output.extension() == ".amc") return MotionFormat::amc;
+    throw UsageError(fmt::format("-o {}: expected a name that ends in .bvh or .amc",
+                                 path_for_message(output.string())));
+}
+
+std::string asf_text(const Skeleton& skeleton) {
+    try {
+        return write_asf(skeleton);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError(
+            fmt::format("ASF cannot hold this skeleton ({}); write a .bvh instead", error.what()));
+    }
+}
+
+/// An AMC file means nothing without its skeleton, which is written beside it: not over another
+/// one, that other takes may need.
+void write_amc_and_asf(const Clip& motion, const fs::path& output) {
+    fs::path path = output;
+    path.replace_extension(".asf");
+    const std::string skeleton = asf_text(*motion.skeleton);
+    if (fs::exists(path) && read_file(path) != skeleton) {
+        throw CreateError(fmt::format("{} is the skeleton of something else; give -o another name",
+                                      path_for_message(path.string())));
+    }
+    write_file_atomically(path, skeleton);
+    write_file_atomically(output, write_amc(motion));
+}
+
+/// The nodes passed, each with how often in a row.
+std::string path_text(const std::vector<std::string>& nodes) {
+    std::string text;
+    for (size_t i = 0; i < nodes.size();) {
+        size_t end = i + 1;
+        while (end < nodes.size() && nodes[end] == nodes[i]) ++end;
+        text += (text.empty() ? "" : " → ") + nodes[i];
+        if (end - i > 1) text += fmt::format(" × {}", end - i);
+        i = end;
+    }
+    return text;
+}
+
+void print_walk(const PrimitiveWalk& walk) {
+    const WalkQuality& quality = walk.quality;
+    fmt::print("path          {}\n", path_text(walk.nodes));
+    fmt::print("motion        {} frames at {:g} a second, on the body of {}\n",
+               walk.motion.frames(), walk.motion.rate, walk.body);
+    fmt::print("foot slide    {:.2f} cm a second of contact (in the takes {:.2f})\n",
+               quality.slide.speed(), quality.slide_in_takes.speed());
+    fmt::print("fastest joint {:.0f} cm/s (in the takes {:.0f})\n", quality.peaks.speed,
+               quality.peaks_in_takes.speed);
+    fmt::print("hardest jolt  {:.0f} cm/s² (in the takes {:.0f})\n", quality.peaks.acceleration,
+               quality.peaks_in_takes.acceleration);
+}
+
+void warn_of_early_end(const PrimitiveWalk& walk, const WalkOptions& options, const Log& log) {
+    if (!walk.ended_early) return;
+    log.warning(
+        "the walk ends after {:.1f} of {:g} s: nothing follows {}{}; another --seed or "
+        "--from may last longer",
+        static_cast<double>(walk.motion.frames()) / walk.motion.rate, options.seconds,
+        walk.nodes.back(), options.to.empty() ? "" : " that leads back to --to");
+}
+
+ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
+    if (flags.graph != "primitives") {
+        throw UsageError(fmt::format("--graph {}: expected primitives", flags.graph));
+    }
+    const MotionFormat format = format_of(flags.output);
+    const OpenStore open(flags.store, flags.generation);
+    const PrimitiveWalk made =
+        walk_primitives(stored_primitives(open), clip_source(open.generation), flags.walk);
+    if (format == MotionFormat::bvh) {
+        write_file_atomically(flags.output, write_bvh(made.motion));
+    } else {
+        write_amc_and_asf(made.motion, flags.output);
+    }
+    print_walk(made);
+    warn_of_early_end(made, flags.walk, invocation.log);
+    return ExitCode::success;
+}
+
+}  // namespace
+
+Command walk_command() {
+    return {
+        "walk", "put a new motion together from the primitives of a store",
+        "kinetome walk motion.store --graph primitives --seconds 30 --seed 1 --from walk "
+        "-o walk.bvh",
+        [](CLI::App& app) -> Run {
+            auto flags = std::make_shared<WalkFlags>();
+            WalkOptions& options = flags->walk;
+            app.add_option("STORE", flags->store, "store to read")->required();
+            app.add_option("-o,--output", flags->output,
+                           "file to write: .bvh, or .amc with its .asf beside it")
+                ->required();
+            app.add_option("--graph", flags->graph, "what the walk leads through: primitives")
+                ->capture_default_str();
+            app.add_option("--seconds", options.seconds, "wanted length")->capture_default_str();
+            app.add_option("--seed", options.seed, "the same seed walks the same way")
+                ->capture_default_str();
+            app.add_option("--from", options.from,
+                           "label (of STORE/labels.csv) or cluster to begin with");
+            app.add_option("--to", options.to, "label or cluster to end with");
+            app.add_option("--fade", options.fade_seconds,
+                           "seconds that going over from one primitive to another takes at most")
+                ->capture_default_str();
+            app.add_option("--body", options.body,
+                           "clip whose skeleton moves (default: the first of the walk)");
+            app.add_option("--generation", flags->generation,
+                           "id, the beginning of one, or current");
+            return [=](const Invocation& invocation) { return walk(*flags, invocation); };
+        }};
+}
+
+}  // namespace kinetome::cli

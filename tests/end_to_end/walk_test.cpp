@@ -1,0 +1,93 @@
+// What `walk` and the export of its graph promise.
+#include "program.h"
+#include "store_on_disk.h"
+#include "support/temporary_folder.h"
+#include "takes.h"
+
+namespace {
+
+constexpr int usage = 64, cannot_create = 73;
+
+/// A store of generated takes whose cycles are its labels.
+struct LabelledStore {
+    TemporaryFolder folder;
+    std::string path = (folder / "store").string();
+    LabelledStore() {
+        generate_corpus(folder / "takes", 24000, 2);
+        require_program(reindex(folder / "takes", path,
+                                {"--only", "frames,features,neighbors,segments,primitives"}));
+        fs::copy_file(folder / "takes" / "cycles.csv", fs::path(path) / "labels.csv");
+    }
+    std::string output(const std::string& name) const { return (folder / name).string(); }
+};
+
+int64_t lines_after(const std::string& text, const std::string& beginning) {
+    const auto lines = lines_of(text);
+    const auto found = std::find_if(lines.begin(), lines.end(), [&](const std::string& line) {
+        return line.starts_with(beginning);
+    });
+    return lines.end() - found - 1;
+}
+
+}  // namespace
+
+TEST_CASE("a walk is written as BVH and as AMC with its skeleton, the same for the same seed",
+          "[walk]") {
+    const LabelledStore store;
+    const auto walk = [&](const std::string& output, std::vector<std::string> more = {}) {
+        std::vector<std::string> words = {"walk",   store.path, "--seconds", "10",
+                                          "--seed", "3",        "-o",        store.output(output)};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const CommandResult first = require_program(walk("first.bvh", {"--graph", "primitives"}));
+    CHECK(contains(first.output, "1200 frames at 120 a second"));
+    CHECK(contains(first.output, "foot slide"));
+    const std::string bvh = text_of(store.output("first.bvh"));
+    CHECK(contains(bvh, "Frames: 1200\n"));
+    CHECK(lines_after(bvh, "Frame Time: ") == 1200);
+    require_program(walk("again.bvh", {"--threads", "1"}));
+    CHECK(text_of(store.output("again.bvh")) == bvh);
+
+    // What is written is a take like any other.
+    require_program(walk("takes/walk.amc"));
+    require_program({"ingest", store.output("takes"), "--store", store.output("other")});
+    require_program({"publish", store.output("other")});
+    const auto clips = lines_of(require_program({"export", store.output("other"), "clips"}).output);
+    CHECK(std::count_if(clips.begin(), clips.end(), [](const std::string& line) {
+              return line.starts_with("walk,") && contains(line, ",1200,indexed,");
+          }) == 1);
+
+    CHECK(contains(require_program(walk("takes/01/01.amc"), cannot_create).errors,
+                   "01.asf is the skeleton of something else"));
+    CHECK(contains(require_program(walk("walk.txt"), usage).errors, ".bvh or .amc"));
+    CHECK(contains(require_program(walk("w.bvh", {"--graph", "letters"}), usage).errors,
+                   "expected primitives"));
+    CHECK(contains(require_program(walk("w.bvh", {"--from", "swimming"}), usage).errors,
+                   "no primitive has this label or cluster"));
+    CHECK(contains(require_program(walk("w.bvh", {"--body", "nobody"}), usage).errors,
+                   "no clip 'nobody' is indexed"));
+    CHECK_FALSE(fs::exists(store.output("w.bvh")));
+
+    const std::string dot =
+        require_program({"export", store.path, "primitive-graph", "--format", "dot"}).output;
+    CHECK(dot.starts_with("digraph primitives {"));
+    const auto rows = lines_of(require_program({"export", store.path, "primitive-graph"}).output);
+    CHECK(rows.front().starts_with("from_node,to_node,from_cluster,to_cluster,from_label,"));
+    CHECK(rows.size() > 10);
+    CHECK(contains(
+        require_program({"export", store.path, "letters", "--format", "dot"}, usage).errors,
+        "expected csv or json"));
+}
+
+TEST_CASE("a store without primitives says what makes them", "[walk]") {
+    const TemporaryFolder folder;
+    generate_corpus(folder / "takes", 2400, 1);
+    const std::string store = (folder / "store").string();
+    require_program(reindex(folder / "takes", store, {"--only", "frames"}));
+    const std::string output = (folder / "walk.bvh").string();
+    CHECK(contains(require_program({"walk", store, "-o", output}, usage).errors,
+                   "no primitives yet; kinetome reindex"));
+    CHECK(contains(require_program({"export", store, "primitive-graph"}, usage).errors,
+                   "no primitives yet; kinetome reindex"));
+}
