@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "command.h"
+#include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/stages/open_store.h"
+#include "kinetome/stages/stored_labels.h"
+
+namespace kinetome::cli {
+namespace {
+
+struct LabelFlags {
+    std::filesystem::path store, from, truth, output;
+    std::vector<std::string> known_takes;
+    LabelTransferOptions transfer;
+    std::string format = "csv", generation = "current";
+};
+
+/// Rows of a table of labels or of annotated activities, whichever it is.
+std::vector<CycleRow> read_labels(const std::filesystem::path& file) {
+    const std::string text = read_source_file(file);
+    if (text.substr(0, text.find('\n')).find("end_lo") == std::string::npos) {
+        return parse_cycles_csv(text, file.string());
+    }
+    std::vector<CycleRow> rows;
+    for (const TruthRow& row : parse_truth_csv(text, file.string())) {
+        rows.push_back({row.clip, row.first, row.end, row.label, row.line});
+    }
+    return rows;
+}
+
+Table make_table(const LabelFlags& flags, int threads) {
+    const OpenStore open(flags.store, flags.generation);
+    std::vector<ClipPrimitive> primitives = stored_primitives(open);
+    const PrimitiveFeatures features = read_primitive_features(open.generation);
+    if (!flags.from.empty()) {
+        for (ClipPrimitive& primitive : primitives) primitive.label.clear();
+        label_primitives(primitives, read_labels(flags.from));
+    }
+    const bool any_known = std::any_of(primitives.begin(), primitives.end(),
+                                       [](const auto& one) { return !one.label.empty(); });
+    if (!flags.truth.empty() && !any_known) {
+        return label_tables(features, primitives, read_labels(flags.truth), flags.known_takes,
+                            flags.transfer, threads);
+    }
+    if (!any_known) {
+        throw UsageError(fmt::format(
+            "no primitive has a label yet: give some with --from FILE, or put them in {} "
+            "(clip,first,end,label; frames of the source)",
+            (flags.store / "labels.csv").string()));
+    }
+    const TransferredLabels labels =
+        transfer_labels(features, std::move(primitives), flags.transfer, threads);
+    return flags.truth.empty() ? label_rows(labels) : label_score(labels, read_labels(flags.truth));
+}
+
+}  // namespace
+
+Command label_command() {
+    return {"label", "transfer labels to the primitives that have none",
+            "kinetome label motion.store --from labels.csv -o labelled.csv",
+            [](CLI::App& app) -> Run {
+                auto flags = std::make_shared<LabelFlags>();
+                app.add_option("STORE", flags->store, "store to read")->required();
+                app.add_option("--from", flags->from,
+                               "labels: clip,first,end,label (default: STORE/labels.csv)");
+                app.add_option("--truth", flags->truth,
+                               "annotation: print precision and recall instead; without labels, of "
+                               "transferring from all other annotated takes to each");
+                app.add_option("--known-takes", flags->known_takes,
+                               "with --truth alone: also from the first of these takes, the first "
+                               "two, …, separated by commas")
+                    ->delimiter(',');
+                app.add_option("--radius", flags->transfer.radius,
+                               "frames on a path are no farther apart, cm")
+                    ->capture_default_str();
+                app.add_option("--threshold", flags->transfer.threshold,
+                               "mean distance along a path to a label, cm, at most")
+                    ->capture_default_str();
+                app.add_option("--lead", flags->transfer.lead,
+                               "share of what any other label costs that a label may cost at most")
+                    ->capture_default_str();
+                app.add_option("--format", flags->format, "csv or json")->capture_default_str();
+                app.add_option("-o,--output", flags->output,
+                               "file to write (default: standard output)");
+                app.add_option("--generation", flags->generation,
+                               "id, the beginning of one, or current");
+                return [=](const Invocation& invocation) {
+                    const TableFormat format = parse_table_format(flags->format);
+                    const std::string text =
+                        write_table(make_table(*flags, invocation.resources().threads), format);
+                    if (!flags->output.empty()) {
+                        write_file_atomically(flags->output, text);
+                    } else {
+                        std::fwrite(text.data(), 1, text.size(), stdout);
+                    }
+                    return ExitCode::success;
+                };
+            }};
+}
+
+}  // namespace kinetome::cli
