@@ -51,5 +51,6 @@ Command diff_command();
 Command export_command();
 Command evaluate_command();
 Command walk_command();
+Command label_command();
 
 }  // namespace kinetome::cli

@@ -35,7 +35,8 @@ std::string command_line(int argc, char** argv) {
 std::vector<Command> all_commands() {
     return {reindex_command(),  ingest_command(), plan_command(),     publish_command(),
             generate_command(), info_command(),   verify_command(),   gc_command(),
-            diff_command(),     export_command(), evaluate_command(), walk_command()};
+            diff_command(),     export_command(), evaluate_command(), label_command(),
+            walk_command()};
 }
 
 /// All ranks refuse alike; rank 0 says why.

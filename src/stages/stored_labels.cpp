@@ -156,8 +156,8 @@ TransferredLabels transfer_labels(const PrimitiveFeatures& features,
 }
 
 Table label_rows(const TransferredLabels& labels) {
-    Table table{
-        {"clip", "first", "end", "label", "origin", "cost", "source_clip", "source_first"}, {}};
+    Table table{{"clip", "first", "end", "label", "origin", "cost", "source_clip", "source_first"},
+                {}};
     for (size_t p = 0; p < labels.primitives.size(); ++p) {
         const ClipPrimitive& primitive = labels.primitives[p];
         const LabelGuess& guess = labels.guesses[p];
@@ -206,15 +206,14 @@ Table label_tables(const PrimitiveFeatures& features, const std::vector<ClipPrim
         for (size_t p = 0; p < found.size(); ++p) given[p] = std::max(given[p], found[p]);
     }
     Table table = empty_score();
-    append_table(table, "all other takes", names,
-                 label_table(true_labels, given, names.count()));
+    append_table(table, "all other takes", names, label_table(true_labels, given, names.count()));
 
     std::vector<int64_t> known_clips;
     for (const std::string& name : known_takes) {
         const auto clip = clips.find(name);
         if (clip == clips.end()) {
-            throw UsageError(fmt::format("--known-takes {}: no primitive of that take is annotated",
-                                         name));
+            throw UsageError(
+                fmt::format("--known-takes {}: no primitive of that take is annotated", name));
         }
         known_clips.push_back(clip->second);
     }
