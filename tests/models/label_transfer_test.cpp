@@ -66,7 +66,7 @@ LabelGuess guess_one(const MatrixF& known, const std::vector<CorpusPrimitive>& p
 }  // namespace
 
 TEST_CASE("a label costs what the cheapest match in its runs does") {
-    const GeneratedPrimitives all = generated_primitives(14);
+    const GeneratedPrimitives all = generated_primitives(20);
     const std::vector<int32_t> labels = numbers_of(all.labels);
     const auto is_known = [&](size_t p) { return all.primitives[p].clip % 2 == 0; };
     std::vector<int32_t> known(labels.size(), -1);
