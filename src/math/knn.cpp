@@ -25,13 +25,44 @@ void check_rows(const MatrixFView& rows) {
     require_finite(rows, 0);
 }
 
-void append(const NeighbourLists& part, NeighbourLists& lists) {
+void append(const MeasuredLists& part, NeighbourLists& lists) {
     const int64_t before = lists.offsets.back();
     for (size_t i = 1; i < part.offsets.size(); ++i) {
         lists.offsets.push_back(before + part.offsets[i]);
     }
-    lists.rows.insert(lists.rows.end(), part.rows.begin(), part.rows.end());
-    lists.distances.insert(lists.distances.end(), part.distances.begin(), part.distances.end());
+    for (const Neighbour& neighbour : part.neighbours) {
+        lists.rows.push_back(neighbour.row);
+        lists.distances.push_back(static_cast<float>(std::sqrt(neighbour.squared)));
+    }
+}
+
+/// Nothing beyond it can enter the list.
+double squared_limit(const std::vector<RowOfWhole>& list, double radius, int64_t most) {
+    const bool full = static_cast<int64_t>(list.size()) >= most;
+    return full ? list.back().squared : radius * radius;
+}
+
+void enter(std::span<const Neighbour> found, int64_t first_row, int64_t most,
+           std::vector<RowOfWhole>& list) {
+    const auto before = static_cast<std::ptrdiff_t>(list.size());
+    for (const Neighbour& one : found) list.push_back({one.squared, first_row + one.row});
+    std::inplace_merge(list.begin(), list.begin() + before, list.end());
+    if (static_cast<int64_t>(list.size()) > most) list.resize(size_t(most));
+}
+
+/// The part of what there is one of for each query, or for none.
+template <class T>
+std::span<const T> part_of(std::span<const T> all, int64_t first, int64_t size) {
+    return all.empty() ? all : all.subspan(size_t(first), size_t(size));
+}
+
+/// Calls search(part, first, size) for runs of queries, on so many threads.
+template <class Search>
+void for_query_runs(int64_t queries, int threads, const Search& search) {
+    parallel_for(threads, (queries + queries_at_once - 1) / queries_at_once, [&](int64_t run) {
+        const int64_t first = run * queries_at_once;
+        search(run, first, std::min(queries_at_once, queries - first));
+    });
 }
 
 }  // namespace
@@ -47,34 +78,61 @@ KnnIndex::~KnnIndex() = default;
 KnnIndex::KnnIndex(KnnIndex&&) noexcept = default;
 KnnIndex& KnnIndex::operator=(KnnIndex&&) noexcept = default;
 
-NeighbourLists KnnIndex::search(const MatrixFView& queries, const KnnOptions& options, int threads,
-                                std::span<const RowRange> excluded) const {
+void KnnIndex::check_queries(const MatrixFView& queries, int64_t most,
+                             std::span<const RowRange> excluded) const {
     if (queries.cols() != columns_) {
         throw std::invalid_argument("queries of " + std::to_string(queries.cols()) +
                                     " columns were put to rows of " + std::to_string(columns_));
     }
-    if (!(options.radius >= 0)) throw std::invalid_argument("a radius is 0 or more");
-    if (options.neighbours < 1) throw std::invalid_argument("neighbours: at least 1 is asked for");
+    if (most < 1) throw std::invalid_argument("neighbours: at least 1 is asked for");
     if (!excluded.empty() && static_cast<int64_t>(excluded.size()) != queries.rows()) {
         throw std::invalid_argument("excluded rows: one range for each query, or none at all");
     }
     require_finite(queries, 0);
+}
 
-    const int64_t count = (queries.rows() + queries_at_once - 1) / queries_at_once;
-    std::vector<NeighbourLists> parts(static_cast<size_t>(count));
+NeighbourLists KnnIndex::search(const MatrixFView& queries, const KnnOptions& options, int threads,
+                                std::span<const RowRange> excluded) const {
+    check_queries(queries, options.neighbours, excluded);
+    if (!(options.radius >= 0)) throw std::invalid_argument("a radius is 0 or more");
     // Lists cannot be longer than the rows, and room is made for what is asked for.
-    const KnnOptions asked{options.radius,
-                           std::clamp<int64_t>(options.neighbours, 1, std::max<int64_t>(rows_, 1))};
-    parallel_for(threads, count, [&](int64_t part) {
-        const int64_t first = part * queries_at_once;
-        const int64_t size = std::min(queries_at_once, queries.rows() - first);
-        parts[size_t(part)] = search_->search(
-            queries.middleRows(first, size), asked,
-            excluded.empty() ? excluded : excluded.subspan(size_t(first), size_t(size)));
+    const int64_t most = std::min(options.neighbours, std::max<int64_t>(rows_, 1));
+    const std::vector<double> limits(size_t(queries.rows()), options.radius * options.radius);
+    std::vector<MeasuredLists> runs(
+        static_cast<size_t>((queries.rows() + queries_at_once - 1) / queries_at_once));
+    for_query_runs(queries.rows(), threads, [&](int64_t run, int64_t first, int64_t size) {
+        runs[size_t(run)] =
+            search_->search(queries.middleRows(first, size), most,
+                            part_of<double>(limits, first, size), part_of(excluded, first, size));
     });
     NeighbourLists lists;
-    for (NeighbourLists& part : parts) append(std::exchange(part, {}), lists);
+    for (MeasuredLists& run : runs) append(std::exchange(run, {}), lists);
     return lists;
+}
+
+void KnnIndex::search_more(const MatrixFView& queries, int64_t first_row, ListsOfWhole& lists,
+                           int threads, std::span<const RowRange> excluded) const {
+    check_queries(queries, lists.most, excluded);
+    const auto count = static_cast<size_t>(queries.rows());
+    if (lists.radii.size() != count || lists.lists.size() != count) {
+        throw std::invalid_argument("lists of a whole: one radius and one list for each query");
+    }
+    const int64_t most = std::min(lists.most, std::max<int64_t>(rows_, 1));
+    for_query_runs(queries.rows(), threads, [&](int64_t, int64_t first, int64_t size) {
+        std::vector<double> limits;
+        for (int64_t q = first; q < first + size; ++q) {
+            limits.push_back(
+                squared_limit(lists.lists[size_t(q)], lists.radii[size_t(q)], lists.most));
+        }
+        const MeasuredLists found = search_->search(queries.middleRows(first, size), most, limits,
+                                                    part_of(excluded, first, size));
+        for (int64_t q = 0; q < size; ++q) {
+            const auto begin = static_cast<size_t>(found.offsets[size_t(q)]);
+            const auto end = static_cast<size_t>(found.offsets[size_t(q) + 1]);
+            enter(std::span(found.neighbours).subspan(begin, end - begin), first_row, lists.most,
+                  lists.lists[size_t(first + q)]);
+        }
+    });
 }
 
 std::vector<RowRange> rows_nearby_in_time(std::span<const int64_t> clip_offsets,

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "knn_blocks.h"
 #include "knn_search.h"
@@ -12,29 +11,27 @@ class BlockSearch final : public KnnSearch {
   public:
     BlockSearch(const MatrixFView& rows, int threads) : blocks_(rows, threads) {}
 
-    NeighbourLists search(const MatrixFView& queries, const KnnOptions& options,
-                          std::span<const RowRange> excluded) const override {
-        NeighbourLists lists;
-        QueryTile tile(blocks_, options);
+    MeasuredLists search(const MatrixFView& queries, int64_t most,
+                         std::span<const double> squared_limits,
+                         std::span<const RowRange> excluded) const override {
+        MeasuredLists lists;
+        QueryTile tile(blocks_, most);
         for (int64_t first = 0; first < queries.rows(); first += octet) {
             const int64_t count = std::min(octet, queries.rows() - first);
             tile.search(
                 queries.middleRows(first, count),
+                squared_limits.subspan(size_t(first), size_t(count)),
                 excluded.empty() ? excluded : excluded.subspan(size_t(first), size_t(count)));
-            for (int64_t q = 0; q < count; ++q) append(tile.neighbours(q), lists);
+            for (int64_t q = 0; q < count; ++q) {
+                const auto found = tile.neighbours(q);
+                lists.neighbours.insert(lists.neighbours.end(), found.begin(), found.end());
+                lists.offsets.push_back(static_cast<int64_t>(lists.neighbours.size()));
+            }
         }
         return lists;
     }
 
   private:
-    static void append(std::span<const Neighbour> neighbours, NeighbourLists& lists) {
-        for (const Neighbour& neighbour : neighbours) {
-            lists.rows.push_back(neighbour.row);
-            lists.distances.push_back(static_cast<float>(std::sqrt(neighbour.squared)));
-        }
-        lists.offsets.push_back(static_cast<int64_t>(lists.rows.size()));
-    }
-
     RowBlocks blocks_;
 };
 

@@ -26,38 +26,40 @@ class FlannSearch final : public KnnSearch {
         if (rows.rows() > 0) tree_.buildIndex();
     }
 
-    NeighbourLists search(const MatrixFView& queries, const KnnOptions& options,
-                          std::span<const RowRange> excluded) const override {
+    MeasuredLists search(const MatrixFView& queries, int64_t most,
+                         std::span<const double> squared_limits,
+                         std::span<const RowRange> excluded) const override {
         // It cannot leave rows out: more are asked for, then the excluded ones are dropped.
         int64_t widest = 0;
         for (const RowRange& range : excluded) widest = std::max(widest, range.size());
-        const int64_t asked = std::min(options.neighbours + widest, rows_.rows());
+        const int64_t asked = std::min(most + widest, rows_.rows());
         flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED, 0, true);
         parameters.max_neighbors = static_cast<int>(asked);
         std::vector<std::vector<size_t>> rows;
         std::vector<std::vector<float>> squared;
-        if (asked > 0) {
+        if (asked > 0 && queries.rows() > 0) {
             // It takes only what is nearer than the radius.
-            const auto squared_radius = static_cast<float>(options.radius * options.radius);
-            tree_.radiusSearch(
-                as_flann(queries), rows, squared,
-                std::nextafter(squared_radius, std::numeric_limits<float>::infinity()), parameters);
+            const auto limit = static_cast<float>(std::ranges::max(squared_limits));
+            tree_.radiusSearch(as_flann(queries), rows, squared,
+                               std::nextafter(limit, std::numeric_limits<float>::infinity()),
+                               parameters);
         }
         rows.resize(size_t(queries.rows()));
         squared.resize(size_t(queries.rows()));
 
-        NeighbourLists lists;
+        MeasuredLists lists;
         for (size_t q = 0; q < rows.size(); ++q) {
             const RowRange left_out = excluded.empty() ? RowRange{} : excluded[q];
-            const auto most = lists.offsets.back() + options.neighbours;
+            const auto limit = static_cast<float>(squared_limits[q]);
+            const auto full = lists.offsets.back() + most;
             for (size_t i = 0; i < rows[q].size(); ++i) {
                 const auto row = static_cast<int64_t>(rows[q][i]);
                 if (row >= left_out.first && row < left_out.end) continue;
-                if (static_cast<int64_t>(lists.rows.size()) == most) break;
-                lists.rows.push_back(static_cast<int32_t>(row));
-                lists.distances.push_back(std::sqrt(squared[q][i]));
+                if (static_cast<int64_t>(lists.neighbours.size()) == full) break;
+                if (squared[q][i] > limit) break;
+                lists.neighbours.push_back({double(squared[q][i]), static_cast<int32_t>(row)});
             }
-            lists.offsets.push_back(static_cast<int64_t>(lists.rows.size()));
+            lists.offsets.push_back(static_cast<int64_t>(lists.neighbours.size()));
         }
         return lists;
     }

@@ -24,17 +24,18 @@ uint32_t lanes_from(int64_t row, int64_t block_row) {
 
 // A sum of p squared differences is off by at most (p + 2) half epsilons of itself, the distance by
 // half of that: the factor has room for as much in the reach, and for sums in double.
-QueryTile::QueryTile(const RowBlocks& blocks, const KnnOptions& options)
+QueryTile::QueryTile(const RowBlocks& blocks, int64_t most)
     : blocks_(blocks),
-      options_(options),
+      most_(most),
       dimension_(blocks.axes().dimension()),
       rounding_(1 + static_cast<float>(dimension_ + 8) * FloatLimits::epsilon()),
       values_(static_cast<size_t>(octet * blocks.columns())),
       projected_(static_cast<size_t>(octet * dimension_)),
       box_(static_cast<size_t>(2 * dimension_)) {}
 
-void QueryTile::search(const MatrixFView& queries, std::span<const RowRange> excluded) {
-    load(queries, excluded);
+void QueryTile::search(const MatrixFView& queries, std::span<const double> squared_limits,
+                       std::span<const RowRange> excluded) {
+    load(queries, squared_limits, excluded);
     queue_.clear();
     if (blocks_.levels() > 0) push_boxes(blocks_.levels() - 1, 0);
     while (!queue_.empty()) {
@@ -48,7 +49,8 @@ void QueryTile::search(const MatrixFView& queries, std::span<const RowRange> exc
     }
 }
 
-void QueryTile::load(const MatrixFView& queries, std::span<const RowRange> excluded) {
+void QueryTile::load(const MatrixFView& queries, std::span<const double> squared_limits,
+                     std::span<const RowRange> excluded) {
     size_ = queries.rows();
     MatrixF projected;
     VectorF slack;
@@ -62,7 +64,7 @@ void QueryTile::load(const MatrixFView& queries, std::span<const RowRange> exclu
         }
         slack_[q] = slack[row];
         excluded_[q] = excluded.empty() ? RowRange{} : excluded[q];
-        nearest_[q].reset(options_.neighbours, options_.radius * options_.radius);
+        nearest_[q].reset(most_, squared_limits[q]);
         set_reach(q);
     }
 }

@@ -17,10 +17,13 @@ namespace kinetome {
 
 class QueryTile {
   public:
-    QueryTile(const RowBlocks& blocks, const KnnOptions& options);
+    /// For at most `most` neighbours of each query.
+    QueryTile(const RowBlocks& blocks, int64_t most);
 
-    /// Searches for one to eight queries; `excluded` is empty or as long.
-    void search(const MatrixFView& queries, std::span<const RowRange> excluded);
+    /// Searches for one to eight queries, each within the root of its own limit; `excluded` is
+    /// empty or as long.
+    void search(const MatrixFView& queries, std::span<const double> squared_limits,
+                std::span<const RowRange> excluded);
 
     /// Of a query of the last search.
     std::span<const Neighbour> neighbours(int64_t query) {
@@ -45,7 +48,8 @@ class QueryTile {
         uint64_t number_;
     };
 
-    void load(const MatrixFView& queries, std::span<const RowRange> excluded);
+    void load(const MatrixFView& queries, std::span<const double> squared_limits,
+              std::span<const RowRange> excluded);
     void load_projected(const MatrixF& projected, const VectorF& slack);
     void set_reach(size_t query);
 
@@ -64,7 +68,7 @@ class QueryTile {
     void measure(int64_t block, size_t query, double (&squared)[octet]) const;
 
     const RowBlocks& blocks_;
-    KnnOptions options_;
+    int64_t most_;
     int64_t dimension_;  ///< of projected rows
     float rounding_;     ///< no projected distance comes out longer than by this factor
 

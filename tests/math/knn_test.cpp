@@ -217,6 +217,78 @@ TEST_CASE("excluded rows make room for others") {
     CHECK(flann.search(rows, options, 1, nearby).offsets == expected.offsets);
 }
 
+/// What search_more over parts finds, parts cut at `cuts` and searched in the order given.
+ListsOfWhole lists_of_parts(const MatrixF& rows, const KnnOptions& options,
+                            const std::vector<int64_t>& cuts, const std::vector<size_t>& order,
+                            const std::vector<RowRange>& excluded, int threads) {
+    const auto count = size_t(rows.rows());
+    ListsOfWhole whole{options.neighbours, std::vector(count, options.radius), {}};
+    whole.lists.resize(count);
+    for (const size_t part : order) {
+        const int64_t first = cuts[part], size = cuts[part + 1] - first;
+        std::vector<RowRange> of_part;
+        for (const RowRange& range : excluded) {
+            of_part.push_back({range.first - first, range.end - first});
+        }
+        KnnIndex(rows.middleRows(first, size), KnnEngine::blocks, threads)
+            .search_more(rows, first, whole, threads, of_part);
+    }
+    return whole;
+}
+
+bool same(const ListsOfWhole& whole, const NeighbourLists& expected) {
+    NeighbourLists lists;
+    for (const auto& list : whole.lists) {
+        for (const RowOfWhole& one : list) {
+            lists.rows.push_back(int32_t(one.row));
+            lists.distances.push_back(float(std::sqrt(one.squared)));
+        }
+        lists.offsets.push_back(int64_t(lists.rows.size()));
+    }
+    return same(lists, expected);
+}
+
+TEST_CASE(
+    "part by part, in any order, the lists are those of the whole, ties at the end included") {
+    for (const auto& [name, rows] : all_cases(9)) {
+        if (rows.rows() < 200) continue;
+        const int64_t count = rows.rows();
+        const auto clips = std::vector<int64_t>{0, 60, count};
+        for (const int64_t most : {1, 10, 1000}) {
+            for (const int64_t apart : {0, 12}) {
+                const KnnOptions options{middling_radius(rows), most};
+                const auto excluded = rows_nearby_in_time(clips, {0, count}, apart);
+                const NeighbourLists expected = block_lists(rows, rows, options, excluded);
+                const std::vector<int64_t> cuts = {0, 1, 70, 71, 160, count};
+                INFO(name << ", " << most << " neighbours, " << apart << " frames excluded");
+                CHECK(same(lists_of_parts(rows, options, cuts, {0, 1, 2, 3, 4}, excluded, 1),
+                           expected));
+                CHECK(same(lists_of_parts(rows, options, cuts, {3, 0, 4, 2, 1}, excluded, 2),
+                           expected));
+                CHECK(same(lists_of_parts(rows, options, {0, count}, {0}, excluded, 1), expected));
+            }
+        }
+    }
+}
+
+TEST_CASE("each query has a radius of its own when parts are searched") {
+    const MatrixF rows = wandering_rows(300, 6, 21);
+    const KnnIndex index(rows, KnnEngine::blocks, 1);
+    ListsOfWhole whole{50, {}, std::vector<std::vector<RowOfWhole>>(300)};
+    for (int64_t q = 0; q < 300; ++q) whole.radii.push_back(q % 2 ? 1.0 : 3.0);
+    index.search_more(rows, 1000, whole, 1);
+    const NeighbourLists near = index.search(rows, {1, 50}, 1),
+                         far = index.search(rows, {3, 50}, 1);
+    for (int64_t q = 0; q < 300; ++q) {
+        const auto expected = (q % 2 ? near : far).rows_of(q);
+        const auto& found = whole.lists[size_t(q)];
+        REQUIRE(found.size() == expected.size());
+        for (size_t i = 0; i < found.size(); ++i) CHECK(found[i].row == 1000 + expected[i]);
+    }
+    whole.radii.pop_back();
+    CHECK_THROWS_AS(index.search_more(rows, 0, whole, 1), std::invalid_argument);
+}
+
 TEST_CASE("frames nearby in time are those of the same clip") {
     const std::vector<int64_t> clips = {0, 10, 10, 30};
     const auto nearby = rows_nearby_in_time(clips, {8, 13}, 3);

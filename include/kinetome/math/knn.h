@@ -1,6 +1,7 @@
 // The nearest rows within a radius, exactly (S3 §3: the neighbourhood graph of poses).
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -39,6 +40,21 @@ struct NeighbourLists {
     size_t first(int64_t query) const { return static_cast<size_t>(offsets[size_t(query)]); }
 };
 
+/// A row of a whole that is searched part by part.
+struct RowOfWhole {
+    double squared = 0;  ///< distance
+    int64_t row = 0;
+    auto operator<=>(const RowOfWhole&) const = default;
+};
+
+/// The nearest rows of queries so far, while parts of a whole that is too large for one index are
+/// searched one after another.
+struct ListsOfWhole {
+    int64_t most = 128;                          ///< neighbours of a query, the nearest
+    std::vector<double> radii;                   ///< of each query
+    std::vector<std::vector<RowOfWhole>> lists;  ///< of each query, the nearest first
+};
+
 class KnnSearch;
 
 /// Rows made ready to be searched; keeps a copy of them, with boxes half as large again.
@@ -66,7 +82,17 @@ class KnnIndex {
     NeighbourLists search(const MatrixFView& queries, const KnnOptions& options, int threads,
                           std::span<const RowRange> excluded = {}) const;
 
+    /// Enters into the lists of the queries the rows of this index, as rows [first_row, first_row +
+    /// rows()) of the whole. After all parts, in any order, the lists are those of one index of the
+    /// whole, to the bit with KnnEngine::blocks. `excluded` holds rows of this index; throws as
+    /// above, and unless there are a radius and a list for each query.
+    void search_more(const MatrixFView& queries, int64_t first_row, ListsOfWhole& lists,
+                     int threads, std::span<const RowRange> excluded = {}) const;
+
   private:
+    void check_queries(const MatrixFView& queries, int64_t most,
+                       std::span<const RowRange> excluded) const;
+
     int64_t rows_;
     int64_t columns_;
     std::unique_ptr<const KnnSearch> search_;
