@@ -21,8 +21,10 @@
 #include <vector>
 
 #include "kinetome/base/file.h"
+#include "kinetome/base/random.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/features/pose_vector.h"
+#include "kinetome/math/knn.h"
 #include "kinetome/math/mixture.h"
 #include "kinetome/math/pca.h"
 #include "kinetome/models/pose_clusters.h"
@@ -101,6 +103,7 @@ ReindexRequest request(const fs::path& corpus, const fs::path& store, const Reso
     asked.options.pose_clusters.clusters = 1;
     asked.options.pose_clusters.mixture.max_iterations = 1;
     asked.options.partition.rule = PartitionRule::none;
+    asked.options.corpus_neighbors.wanted = true;
     return asked;
 }
 
@@ -143,14 +146,22 @@ MatrixF projected_rows(const fs::path& store) {
     return pca.project(rows);
 }
 
-/// Neighbours in a store's graphs.
-double edges_of(const Generation& generation) {
+/// What a stage left in the graphs of a store.
+struct GraphSize {
+    double frames = 0;
     double edges = 0;
-    for (const Receipt* receipt : generation.ledger().of_stage("neighbors")) {
+};
+
+GraphSize size_of_graphs(const Generation& generation, const std::string& stage) {
+    GraphSize size;
+    for (const Receipt* receipt : generation.ledger().of_stage(stage)) {
         const NeighborShardReader shard(generation.open(receipt->file.file_name));
-        for (const NeighborShardClip& clip : shard.clips()) edges += double(clip.edges);
+        for (const NeighborShardClip& clip : shard.clips()) {
+            size.frames += static_cast<double>(clip.frames);
+            size.edges += static_cast<double>(clip.edges);
+        }
     }
-    return edges;
+    return size;
 }
 
 double nanoseconds(double seconds, int64_t count) {
@@ -211,6 +222,23 @@ double measure_accessibility(const MatrixRows& rows, int turns) {
     return nanoseconds(least.cpu, model.clusters() * model.clusters());
 }
 
+/// To index so many rows of a graph's width that move on a little from one to the next.
+double measure_index(double count, int turns) {
+    constexpr int64_t columns = 45;
+    RandomStream random(1, "rows to index");
+    MatrixF rows = MatrixF::Zero(static_cast<int64_t>(count), columns);
+    for (int64_t i = 1; i < rows.rows(); ++i) {
+        for (int64_t j = 0; j < columns; ++j) {
+            rows(i, j) = rows(i - 1, j) + static_cast<float>(random.uniform() - 0.5);
+        }
+    }
+    Least least;
+    for (int turn = 0; turn < turns; ++turn) {
+        least.time([&] { KnnIndex(rows, KnnEngine::blocks, 1); });
+    }
+    return nanoseconds(least.cpu, rows.rows());
+}
+
 std::string processor() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {
@@ -226,7 +254,8 @@ enum StageNumber : size_t {
     strings_stage,
     neighbors_stage,
     segments_stage,
-    primitives_stage
+    primitives_stage,
+    corpus_neighbors_stage
 };
 
 Rates measure(const Options& options) {
@@ -245,11 +274,11 @@ Rates measure(const Options& options) {
     const int64_t count = opened.generation.catalog().frames();
     const auto files = static_cast<double>(opened.generation.ledger().of_stage("frames").size());
 
-    const auto shard_rates = [&](StageNumber stage, double values) {
+    const auto shard_rates = [&](StageNumber stage, double values, double elsewhere = 0) {
         ShardRates rates;
         rates.seconds_per_file = empty[stage].wall;
         rates.nanoseconds_per_value =
-            std::max(0.0, one[stage].cpu - files * empty[stage].cpu) * 1e9 / values;
+            std::max(0.0, one[stage].cpu - files * empty[stage].cpu - elsewhere) * 1e9 / values;
         rates.serial_share = serial_share(one[stage].wall, all[stage].wall, resources.threads);
         return rates;
     };
@@ -263,7 +292,13 @@ Rates measure(const Options& options) {
     rates.frames = shard_rates(frames_stage, frames * values_of_frames(shape));
     rates.features =
         shard_rates(features_stage, frames * values_of_features(shape, features, 120.0));
-    rates.neighbors = shard_rates(neighbors_stage, 2 * edges_of(opened.generation));
+    rates.neighbors =
+        shard_rates(neighbors_stage, 2 * size_of_graphs(opened.generation, "neighbors").edges);
+    const GraphSize searched = size_of_graphs(opened.generation, "corpus_neighbors");
+    rates.search.nanoseconds_per_row = measure_index(searched.frames, options.turns);
+    rates.corpus_neighbors =
+        shard_rates(corpus_neighbors_stage, 3 * searched.edges * crowding(searched.frames),
+                    files * searched.frames * rates.search.nanoseconds_per_row * 1e-9);
     const double graph_frames = frames * features.effector_rate / 120.0;
     rates.segments = shard_rates(segments_stage, graph_frames);
     rates.primitives = shard_rates(primitives_stage, graph_frames);

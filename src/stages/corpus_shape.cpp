@@ -90,6 +90,18 @@ double expected_edges(const ClipShape& clip, const ReindexOptions& options) {
     return frames * std::max(1.0, most * (1 - std::exp(-within_radius / most)));
 }
 
+double expected_corpus_edges(const ClipShape& clip, int64_t class_frames,
+                             const ReindexOptions& options) {
+    return static_cast<double>(clip.frames_at(options.features.effector_rate)) *
+           static_cast<double>(std::min(options.neighbors.knn.neighbours, class_frames));
+}
+
+std::vector<int64_t> CorpusShape::class_frames_at(double rate) const {
+    std::vector<int64_t> frames_of_class(classes.size());
+    for (const ClipShape& clip : clips) frames_of_class[clip.clip_class] += clip.frames_at(rate);
+    return frames_of_class;
+}
+
 int64_t CorpusShape::frames() const {
     int64_t total = 0;
     for (const ClipShape& clip : clips) total += clip.frames;

@@ -59,12 +59,13 @@ uint64_t features_bytes(const ClassShape& shape, int64_t clips, int64_t pose_row
 }
 
 /// NeighborShardWriter.
-uint64_t neighbors_bytes(int64_t clips, int64_t frames, int64_t edges) {
+uint64_t neighbors_bytes(int64_t clips, int64_t frames, int64_t edges,
+                         std::initializer_list<int64_t> edge_bytes) {
     return Group()
         .rows(1, {number})
         .rows(clips, {number, name, number, number, number, number, number})
         .rows(frames, {index})
-        .rows(edges, {index, value})
+        .rows(edges, edge_bytes)
         .bytes();
 }
 
@@ -128,13 +129,18 @@ uint64_t class_bytes(const std::string& stage, const ClassShape& shape, const Cl
     if (stage == "features") {
         return features_bytes(shape, rows.clips, rows.pose_rows, rows.effector_rows);
     }
-    return neighbors_bytes(rows.clips, rows.effector_rows, std::llround(rows.edges));
+    const int64_t edges = std::llround(rows.edges);
+    if (stage == "neighbors") {
+        return neighbors_bytes(rows.clips, rows.effector_rows, edges, {index, value});
+    }
+    return neighbors_bytes(rows.clips, rows.effector_rows, edges, {number, index, value});
 }
 
 uint64_t shard_bytes(const std::string& stage, const std::string& cut, const CorpusShape& corpus,
                      const ReindexOptions& options) {
     const auto shard = corpus.shards.find(cut);
     if (shard == corpus.shards.end()) return 0;
+    const auto class_frames = corpus.class_frames_at(options.features.effector_rate);
     std::map<size_t, ClassRows> classes;
     for (const size_t i : shard->second) {
         const ClipShape& clip = corpus.clips[i];
@@ -143,7 +149,9 @@ uint64_t shard_bytes(const std::string& stage, const std::string& cut, const Cor
         rows.frames += clip.frames;
         rows.pose_rows += clip.frames_at(options.features.pose_rate);
         rows.effector_rows += clip.frames_at(options.features.effector_rate);
-        rows.edges += expected_edges(clip, options);
+        rows.edges += stage == "neighbors"
+                          ? expected_edges(clip, options)
+                          : expected_corpus_edges(clip, class_frames[clip.clip_class], options);
     }
     uint64_t bytes = 0;
     for (const auto& [clip_class, rows] : classes) {

@@ -130,6 +130,7 @@ constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
 constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ratio},
                                          std::pair{"bic", ClusterCountRule::bic}};
 
+constexpr std::array off_and_on = {std::pair{"off", false}, std::pair{"on", true}};
 constexpr std::array knn_engine_names = {std::pair{"blocks", KnnEngine::blocks},
                                          std::pair{"flann", KnnEngine::flann}};
 
@@ -228,6 +229,11 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "for motion of low amplitude; 0: the same radius for all takes"),
         choice("knn-engine", "neighbors", g.engine, knn_engine_names,
                "that searches neighbours; flann rounds"),
+        choice("corpus-graph", "corpus_neighbors", o.corpus_neighbors.wanted, off_and_on,
+               "whether neighbours are searched in all takes, too"),
+        number("corpus-exclusion", "corpus_neighbors", o.corpus_neighbors.exclusion,
+               "seconds: in the graph of all takes, frames of the same take that are nearer in "
+               "time are left out; 0: none"),
         choice("method", "segments", a.method, activity_method_names,
                "how takes are cut into activities"),
         number("segment-cost", "segments", a.repetition.segment_cost,
@@ -345,6 +351,10 @@ void check_options(const ReindexOptions& o) {
     require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
     require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");
     require(o.neighbors.adapt_radius >= 0, "adapt-radius must not be negative");
+    require(o.corpus_neighbors.exclusion >= 0, "corpus-exclusion must not be negative");
+    require(!o.corpus_neighbors.wanted || o.neighbors.engine == KnnEngine::blocks,
+            "corpus-graph needs knn-engine blocks: what flann finds depends on how takes are "
+            "divided among files");
     require(o.activities.repetition.segment_cost >= 0 &&
                 o.activities.repetition.least_repetition >= 0 &&
                 o.activities.repetition.least_sameness >= 0,

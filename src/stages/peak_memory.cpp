@@ -6,6 +6,7 @@
 #include "clip_pipeline.h"
 #include "kinetome/models/neighbor_graph.h"
 #include "kinetome/models/pose_clusters.h"
+#include "kinetome/stages/graph_rows.h"
 #include "kinetome/stages/stage.h"
 #include "kinetome/stages/work_share.h"
 
@@ -60,6 +61,29 @@ uint64_t graph_feature_bytes(const CorpusShape& corpus, const ReindexOptions& op
     return bytes_of(frames * 3 * effector_values);
 }
 
+/// Queries and the rows they are compared with: at most a shard, or a clip, and all of a class.
+uint64_t search_bytes(const CorpusShape& corpus, const ReindexOptions& options,
+                      const Resources& resources) {
+    const GraphSearchSize size(options, resources);
+    const double rate = options.features.effector_rate;
+    int64_t largest_shard = 0, largest_clip = 0, largest_class = 0;
+    for (const auto& [cut, clips] : corpus.shards) {
+        int64_t rows = 0;
+        for (const size_t i : clips) {
+            const int64_t of_clip = corpus.clips[i].frames_at(rate);
+            rows += of_clip;
+            largest_clip = std::max(largest_clip, of_clip);
+        }
+        largest_shard = std::max(largest_shard, rows);
+    }
+    for (const int64_t frames : corpus.class_frames_at(rate)) {
+        largest_class = std::max(largest_class, frames);
+    }
+    const int64_t queries = std::max(largest_clip, std::min(largest_shard, size.queries));
+    return static_cast<uint64_t>(queries) * size.bytes_per_query +
+           static_cast<uint64_t>(std::min(largest_class, size.rows)) * size.bytes_per_row;
+}
+
 /// What rank 0 holds of every partition until the file is written.
 uint64_t result_bytes(const std::string& stage, const PartitionShape& partition) {
     const int64_t clusters = partition.most_clusters();
@@ -85,6 +109,9 @@ uint64_t partition_bytes(const std::string& stage, const PartitionShape& partiti
 uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
                      const ReindexOptions& options, const Resources& resources, int ranks) {
     const uint64_t at_rest = program_bytes + corpus.clips.size() * bytes_per_clip;
+    if (stage == "corpus_neighbors") {
+        return at_rest + search_bytes(corpus, options, resources);
+    }
     if (stage_named(stage).sharded) {
         return at_rest + pipeline_bytes(stage, corpus, options, resources);
     }

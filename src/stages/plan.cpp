@@ -23,6 +23,9 @@ class KeyMaker {
         for (const std::string& input : stage.inputs) {
             key.add("input " + input, shard ? shard_digest(stage_named(input), *shard)
                                             : logical_digest(stage_named(input)));
+            if (stage.reads_all_shards) {
+                key.add("all " + input, logical_digest(stage_named(input)));
+            }
         }
         if (stage.inputs.empty()) key.add("takes", takes_digest(shard));
         add_options(key, "files", stage.sharded ? "" : "shard-frames");
@@ -104,6 +107,7 @@ RunPlan::RunPlan(Survey surveyed, const ReindexOptions& chosen)
       shards(plan_shards(survey.extents(), options.frames.shard_frames)) {
     KeyMaker keys(survey, options);
     for (const StageRow& stage : stage_table()) {
+        if (!stage.is_wanted(options)) continue;
         if (!stage.sharded) {
             work.push_back(
                 {&stage, nullptr, stage.file_name(nullptr), keys.file_key(stage, nullptr)});
@@ -119,9 +123,9 @@ std::vector<size_t> RunPlan::inputs_of(const PlannedWork& wanted) const {
     std::vector<size_t> inputs;
     for (const std::string& input : wanted.stage->inputs) {
         for (size_t i = 0; i < work.size(); ++i) {
-            const bool same_shard =
-                !wanted.shard || !work[i].shard || work[i].shard == wanted.shard;
-            if (work[i].stage->name == input && same_shard) inputs.push_back(i);
+            const bool is_read = !wanted.shard || !work[i].shard || work[i].shard == wanted.shard ||
+                                 wanted.stage->reads_all_shards;
+            if (work[i].stage->name == input && is_read) inputs.push_back(i);
         }
     }
     return inputs;

@@ -178,6 +178,7 @@ Publication prepare_publication(const RunPlan& plan, const FinishedPlan& all_fin
             "not published: frames are incomplete; run the missing ingest slices, or reindex");
     }
     for (const StageRow& stage : stage_table()) {
+        if (!stage.is_wanted(plan.options)) continue;
         if (!complete.count(stage.name)) log.warning("{}: not complete, left out", stage.name);
     }
     const FinishedPlan finished = work_of(complete, plan, all_finished);

@@ -29,6 +29,10 @@ constexpr Field<ShardRates> shard_fields[] = {
     {"serial_share", &ShardRates::serial_share},
 };
 
+constexpr Field<SearchRates> search_fields[] = {
+    {"nanoseconds_per_row", &SearchRates::nanoseconds_per_row},
+};
+
 constexpr Field<PoseRates> pose_fields[] = {
     {"seconds_per_file", &PoseRates::seconds_per_file},
     {"moments_nanoseconds_per_row", &PoseRates::moments_nanoseconds_per_row},
@@ -81,8 +85,9 @@ class RatesFile {
     }
 
     Rates read() const {
-        require_known(table_, {"machine", "version", "threads", "frames", "features", "poses",
-                               "neighbors", "segments", "primitives"});
+        require_known(table_,
+                      {"machine", "version", "threads", "frames", "features", "poses", "neighbors",
+                       "corpus_neighbors", "search", "segments", "primitives"});
         Rates rates;
         rates.machine = table_["machine"].value_or(std::string());
         rates.version = table_["version"].value_or(std::string());
@@ -92,6 +97,8 @@ class RatesFile {
         rates.poses = section<PoseRates>(table_, "poses", pose_fields, more_pose_keys);
         rates.poses.by_clusters = mixtures();
         rates.neighbors = section<ShardRates>(table_, "neighbors", shard_fields);
+        rates.corpus_neighbors = section<ShardRates>(table_, "corpus_neighbors", shard_fields);
+        rates.search = section<SearchRates>(table_, "search", search_fields);
         rates.segments = section<ShardRates>(table_, "segments", shard_fields);
         rates.primitives = section<ShardRates>(table_, "primitives", shard_fields);
         return rates;
@@ -194,6 +201,12 @@ ClusterRates rates_of_clusters(const PoseRates& rates, int64_t clusters) {
     return result;
 }
 
+double crowding(double frames) {
+    constexpr double rated = 100'000;
+    constexpr double growth = 0.4;  // in the CMU corpus, between 20,000 and 330,000 frames
+    return std::pow(frames / rated, growth);
+}
+
 std::string write_rates(const Rates& rates) {
     std::string text =
         "# Measured by bench/stage_rates_bench; `kinetome plan --rates` reads it.\n"
@@ -203,6 +216,8 @@ std::string write_rates(const Rates& rates) {
     text += section_text("[frames]", rates.frames, shard_fields);
     text += section_text("[features]", rates.features, shard_fields);
     text += section_text("[neighbors]", rates.neighbors, shard_fields);
+    text += section_text("[corpus_neighbors]", rates.corpus_neighbors, shard_fields);
+    text += section_text("[search]", rates.search, search_fields);
     text += section_text("[segments]", rates.segments, shard_fields);
     text += section_text("[primitives]", rates.primitives, shard_fields);
     text += section_text("[poses]", rates.poses, pose_fields);

@@ -71,6 +71,7 @@ std::vector<StageSummary> summarise(const RunPlan& plan, const FinishedPlan& bef
                                     const FinishedPlan& after) {
     std::vector<StageSummary> summaries;
     for (const StageRow& stage : stage_table()) {
+        if (!stage.is_wanted(plan.options)) continue;
         StageSummary summary;
         summary.name = stage.name;
         for (size_t i = 0; i < plan.work.size(); ++i) {
@@ -164,6 +165,7 @@ RunSummary lead(const ReindexRequest& request, StoreDirectory& store, Communicat
 
     order_survey(!opened, ranks);
     const RunRecord record = opened ? *opened : survey_and_enter(request, run, "", stop);
+    require_wanted(request.only, record.options);
     const RunPlan plan(record.survey, record.options);
     tell(plan, run.log());
     const uint64_t survey_peak = meter.cost().peak_bytes;  // stages reset the kernel's counter

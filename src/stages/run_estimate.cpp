@@ -76,6 +76,7 @@ class Estimator {
         estimate.threads = threads();
         estimate.rates_source = pace_.source;
         for (const StageRow& stage : stage_table()) {
+            if (!stage.is_wanted(plan_.options)) continue;
             StageEstimate one = stage_estimate(stage, estimate.ranks);
             estimate.seconds += one.seconds;
             estimate.peak_bytes = std::max(estimate.peak_bytes, one.peak_bytes);
@@ -229,7 +230,7 @@ class Estimator {
 }  // namespace
 
 RunEstimate estimate_run(const EstimateRequest& request, Survey survey, const Log& log) {
-    for (const std::string& stage : request.run.only) stage_named(stage);
+    require_wanted(request.run.only, request.run.options);
     const ExistingStore existing(request.run.store, log);
     const RunPlan plan(std::move(survey), request.run.options);
     return Estimator(request, plan, existing).run();

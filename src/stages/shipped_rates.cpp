@@ -23,9 +23,17 @@ nanoseconds_per_value = 15.44
 serial_share = 0.5
 
 [neighbors]
-seconds_per_file = 0.006
-nanoseconds_per_value = 75.0
+seconds_per_file = 0.003
+nanoseconds_per_value = 60.0
 serial_share = 0.1
+
+[corpus_neighbors]
+seconds_per_file = 0.01
+nanoseconds_per_value = 140.0
+serial_share = 0.1
+
+[search]
+nanoseconds_per_row = 300.0
 
 [segments]
 seconds_per_file = 0.005

@@ -1,6 +1,7 @@
 #include "kinetome/stages/stage_loads.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
@@ -75,7 +76,8 @@ const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
     if (stage == "frames") return rates.frames;
     if (stage == "segments") return rates.segments;
     if (stage == "primitives") return rates.primitives;
-    return stage == "features" ? rates.features : rates.neighbors;
+    if (stage == "features") return rates.features;
+    return stage == "neighbors" ? rates.neighbors : rates.corpus_neighbors;
 }
 
 /// A stage that makes one file of what ranks find out take by take.
@@ -93,16 +95,26 @@ StageLoad load_of_takes(const ShardRates& each, const CorpusShape& corpus,
     return load;
 }
 
-/// Numbers that a sharded stage writes of a clip.
+/// Numbers that a sharded stage writes of a clip, those of one that takes longer counted as more.
 double values_of(const std::string& stage, const ClipShape& clip, const CorpusShape& corpus,
-                 const ReindexOptions& options) {
+                 int64_t class_frames, const ReindexOptions& options) {
     const ClassShape& shape = corpus.class_of(clip);
     const auto frames = static_cast<double>(clip.frames);
     if (stage == "frames") return frames * values_of_frames(shape);
     if (stage == "features") {
         return frames * values_of_features(shape, options.features, clip.rate);
     }
-    return 2 * expected_edges(clip, options);
+    if (stage == "neighbors") return 2 * expected_edges(clip, options);
+    return 3 * expected_corpus_edges(clip, class_frames, options) *
+           crowding(static_cast<double>(class_frames));
+}
+
+/// What is searched again for every shard of the graph of all takes.
+double searched_seconds(const CorpusShape& corpus, const ReindexOptions& options,
+                        const Rates& rates) {
+    const auto frames = corpus.class_frames_at(options.features.effector_rate);
+    const int64_t rows = std::accumulate(frames.begin(), frames.end(), int64_t{0});
+    return static_cast<double>(rows) * rates.search.nanoseconds_per_row * nanosecond;
 }
 
 }  // namespace
@@ -111,17 +123,19 @@ LoadItem shard_item(const std::string& stage, const std::string& cut, const Corp
                     const ReindexOptions& options, const Rates& rates) {
     LoadItem item;
     double values = 0;
+    const auto class_frames = corpus.class_frames_at(options.features.effector_rate);
     const auto shard = corpus.shards.find(cut);
     if (shard != corpus.shards.end()) {
         item.pieces = std::max<int64_t>(1, static_cast<int64_t>(shard->second.size()));
         for (const size_t i : shard->second) {
             const ClipShape& clip = corpus.clips[i];
             item.amount += clip.frames;
-            values += values_of(stage, clip, corpus, options);
+            values += values_of(stage, clip, corpus, class_frames[clip.clip_class], options);
         }
     }
     const ShardRates& each = shard_rates(stage, rates);
     item.seconds = values * each.nanoseconds_per_value * nanosecond;
+    if (stage == "corpus_neighbors") item.seconds += searched_seconds(corpus, options, rates);
     item.fixed_seconds = each.seconds_per_file;
     return item;
 }

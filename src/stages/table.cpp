@@ -1,6 +1,8 @@
 // Every stage of the program. Read this first.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "kinetome/base/error.h"
 #include "kinetome/stages/stage.h"
 
@@ -50,6 +52,14 @@ const std::vector<StageRow>& stage_table() {
          .format_version = 1,
          .description = "executions of movements, and which are the same (S3 §3.2, §4)",
          .make = make_primitives},
+        {.name = "corpus_neighbors",
+         .inputs = {"features", "neighbors"},
+         .sharded = true,
+         .reads_all_shards = true,
+         .format_version = 1,
+         .description = "the neighbourhood graph of all takes together (S3 §3)",
+         .make = make_corpus_neighbors,
+         .switched_on_by = "corpus-graph"},
     };
     return table;
 }
@@ -62,6 +72,24 @@ const StageRow& stage_named(std::string_view name) {
     }
     throw UsageError(
         fmt::format("no stage is called '{}'; there are {}", name, fmt::join(names, ", ")));
+}
+
+void require_wanted(const std::set<std::string>& stages, const ReindexOptions& options) {
+    for (const std::string& name : stages) {
+        const StageRow& stage = stage_named(name);
+        if (stage.is_wanted(options)) continue;
+        throw UsageError(fmt::format("{} is left out of this run: --{} on asks for it", name,
+                                     stage.switched_on_by));
+    }
+}
+
+bool StageRow::is_wanted(const ReindexOptions& options) const {
+    if (switched_on_by.empty()) return true;
+    ReindexOptions copy = options;
+    const auto rows = option_rows(copy);
+    const auto row = std::ranges::find_if(
+        rows, [&](const OptionRow& one) { return one.name == switched_on_by; });
+    return row->get() == "on";
 }
 
 std::string StageRow::file_name(const Shard* shard) const {

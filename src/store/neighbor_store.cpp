@@ -24,8 +24,8 @@ std::span<const T> one(const T& value) {
 
 NeighborShardWriter::NeighborShardWriter(const std::filesystem::path& path,
                                          const ArtifactHeader& header, const WriteOptions& options,
-                                         double effector_rate)
-    : file_(path, header, options), effector_rate_(effector_rate) {}
+                                         double effector_rate, NeighborScope scope)
+    : file_(path, header, options), effector_rate_(effector_rate), scope_(scope) {}
 
 void NeighborShardWriter::begin_class(const std::string& name) {
     file_.write<double>({.path = at(name, "effector_rate"),
@@ -54,16 +54,23 @@ void NeighborShardWriter::begin_class(const std::string& name) {
     rows("clips/radius", ElementType::float64, "cm", "r: neighbours are no farther", "S3 §3");
     rows("neighbour_count", ElementType::int32, "1",
          "neighbours of each frame; their rows follow those of the frames before it", "S3 §3");
-    rows("neighbour", ElementType::int32, "frames",
-         "frames of the same clip, ascending for each frame, itself among them", "S3 §3");
+    if (scope_ == NeighborScope::corpus) {
+        rows("neighbour_clip", ElementType::int64, "1",
+             "clip id of each neighbour, clips of each frame in name order");
+        rows("neighbour", ElementType::int32, "frames",
+             "frames of neighbour_clip, ascending in each", "S3 §3");
+    } else {
+        rows("neighbour", ElementType::int32, "frames",
+             "frames of the same clip, ascending for each frame, itself among them", "S3 §3");
+    }
     rows("distance", ElementType::float32, "cm", "between the stacked features of the two frames",
          "S3 §3");
     classes_.insert(name);
 }
 
 void NeighborShardWriter::add(const NeighborClip& clip, std::span<const int64_t> offsets,
-                              std::span<const int32_t> neighbours,
-                              std::span<const float> distances) {
+                              std::span<const int32_t> neighbours, std::span<const float> distances,
+                              std::span<const int64_t> clips) {
     if (!classes_.count(clip.clip_class)) begin_class(clip.clip_class);
     const auto path = [&](const char* what) { return at(clip.clip_class, what); };
     const int64_t id = clip_id(clip.name);
@@ -81,6 +88,7 @@ void NeighborShardWriter::add(const NeighborClip& clip, std::span<const int64_t>
     file_.append<int64_t>(path("clips/edges"), one(edges));
     file_.append<double>(path("clips/radius"), one(clip.radius));
     file_.append<int32_t>(path("neighbour_count"), counts);
+    if (scope_ == NeighborScope::corpus) file_.append(path("neighbour_clip"), clips);
     file_.append(path("neighbour"), neighbours);
     file_.append(path("distance"), distances);
 }
@@ -127,6 +135,9 @@ StoredNeighbors NeighborShardReader::read(size_t i) const {
     }
     stored.neighbours = file_.read<int32_t>(path("neighbour"), place.first_edge, place.edges);
     stored.distances = file_.read<float>(path("distance"), place.first_edge, place.edges);
+    if (file_.contains(path("neighbour_clip"))) {
+        stored.clips = file_.read<int64_t>(path("neighbour_clip"), place.first_edge, place.edges);
+    }
     return stored;
 }
 

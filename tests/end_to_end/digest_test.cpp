@@ -30,7 +30,7 @@ TEST_CASE("neither threads nor the size of shards change a digest, nor threads a
     generate_corpus(corpus, 24000, 3);
     for (const std::string partition : {"none", "subject"}) {
         INFO("--partition " << partition);
-        const std::vector<std::string> options = {"--partition", partition};
+        const std::vector<std::string> options = {"--partition", partition, "--corpus-graph", "on"};
         const StoreOnDisk first(folder / (partition + "-first"));
         const std::string expected = digests_of(corpus, first.path(), {"1", "8192"}, options);
         REQUIRE(first.artifacts("frames-").size() > 1);
@@ -83,7 +83,8 @@ TEST_CASE("on real takes, neither threads nor the size of shards change a digest
     const auto real = test_corpus();
     if (!real) return;
     const TemporaryFolder folder;
-    const std::vector<std::string> options = {"--clusters", "40", "--max-iterations", "3"};
+    const std::vector<std::string> options = {"--clusters",     "40", "--max-iterations", "3",
+                                              "--corpus-graph", "on"};
     const auto digests = [&](const Way& way) {
         return digests_of(*real / "cmu", folder / (way.threads + "-" + way.shard_frames), way,
                           options);

@@ -235,6 +235,12 @@ serial_share = 0
 seconds_per_file = 0
 nanoseconds_per_value = 0
 serial_share = 0
+[corpus_neighbors]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
+[search]
+nanoseconds_per_row = 0
 [poses]
 seconds_per_file = 0
 moments_nanoseconds_per_row = 0

@@ -9,10 +9,11 @@ namespace {
 
 std::string digests_of(const fs::path& corpus, const fs::path& store, int threads, int ranks,
                        int shard_frames, const std::string& partition) {
-    std::vector<std::string> words = reindex(
-        corpus, store,
-        {"--threads", std::to_string(threads), "--shard-frames", std::to_string(shard_frames),
-         "--partition", partition, "--clusters", "40", "--max-iterations", "3"});
+    std::vector<std::string> words =
+        reindex(corpus, store,
+                {"--threads", std::to_string(threads), "--shard-frames",
+                 std::to_string(shard_frames), "--partition", partition, "--clusters", "40",
+                 "--max-iterations", "3", "--corpus-graph", "on"});
     words.insert(words.begin(), KINETOME_PROGRAM);
     const CommandResult result = run(as_ranks(ranks, words));
     INFO(result.errors);

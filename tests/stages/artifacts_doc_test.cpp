@@ -128,6 +128,7 @@ class SmallStore {
         request.resources.threads = 2;
         request.resources.memory_bytes = uint64_t{1} << 30;
         request.options.partition.rule = rule;
+        request.options.corpus_neighbors.wanted = true;
         request.options.pose_clusters.clusters = 70;  // more than a word of the bit matrix
         request.options.pose_clusters.mixture.max_iterations = 3;
         reindex(request, Log(), StopToken());

@@ -75,7 +75,7 @@ TEST_CASE("values that make no sense are refused before a run begins") {
           "cluster-rule = 'bic'", "compression = 'zip'", "subject-from = '('",
           "subject-from = 'no group'", "min-gain = -1", "joint-map = '/no/such/file'", "radius = 0",
           "neighbours = 0", "stack-offset = -0.1", "knn-engine = 'ann'", "adapt-radius = -1",
-          "joints = 'tail'", "joints = ''"}) {
+          "joints = 'tail'", "joints = ''", "corpus-graph = 'maybe'", "corpus-exclusion = -1"}) {
         refused(toml);
     }
     CHECK_THROWS_AS(parsed("pose-rate = inf"), UsageError);

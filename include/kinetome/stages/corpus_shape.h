@@ -51,11 +51,17 @@ struct CorpusShape {
 
     const ClassShape& class_of(const ClipShape& clip) const { return classes[clip.clip_class]; }
     int64_t frames() const;
+    /// Frames of each class at another rate.
+    std::vector<int64_t> class_frames_at(double rate) const;
 };
 
 /// Neighbours that all frames of a take have together, as long as none is searched. How many poses
 /// of a take are alike differs from take to take by half as much again or less.
 double expected_edges(const ClipShape& clip, const ReindexOptions& options);
+/// The same in the graph of all takes, in which most lists are full; its class has `class_frames`
+/// frames at the effector rate.
+double expected_corpus_edges(const ClipShape& clip, int64_t class_frames,
+                             const ReindexOptions& options);
 
 /// What the takes claim; those that the survey quarantined, or whose skeleton cannot be parsed, are
 /// left out. Skeleton files are read, takes are not.

@@ -53,6 +53,12 @@ struct NeighborOptions {
     double adapt_radius = 0;  ///< r at most so many median distances of a take; 0: r as it is
 };
 
+struct CorpusNeighborOptions {
+    bool wanted = false;  ///< the graph of all takes together
+    double exclusion =
+        0;  ///< seconds: frames of the same take that are nearer in time are left out
+};
+
 struct ReindexOptions {
     FrameOptions frames;
     FeatureOptions features;
@@ -60,6 +66,7 @@ struct ReindexOptions {
     PoseClusterOptions pose_clusters;
     StringOptions motion_strings;
     NeighborOptions neighbors;
+    CorpusNeighborOptions corpus_neighbors;
     ActivityOptions activities;
     PrimitiveOptions primitives;
     PrimitiveClusterOptions primitive_clusters;

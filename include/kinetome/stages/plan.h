@@ -32,7 +32,7 @@ struct RunPlan {
     std::vector<PlannedWork> work;
 
     /// Positions in `work` of what a piece of work reads, in order: of the same shard for sharded
-    /// stages, else of all shards.
+    /// stages, else, and for those that read all shards, of all.
     std::vector<size_t> inputs_of(const PlannedWork& work) const;
 };
 

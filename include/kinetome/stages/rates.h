@@ -17,6 +17,11 @@ struct ShardRates {
     double serial_share = 0;           ///< of the time, that more threads do not shorten
 };
 
+/// What all takes cost that the takes of a shard are compared with, for every shard anew.
+struct SearchRates {
+    double nanoseconds_per_row = 0;  ///< a frame at the effector rate, indexed
+};
+
 /// Mixtures of one size, by one thread.
 struct ClusterRates {
     double clusters = 0;                   ///< κ
@@ -34,6 +39,10 @@ struct PoseRates {
     std::vector<ClusterRates> by_clusters;  ///< ascending; at least one
 };
 
+/// How many times as long it takes to find neighbours among so many frames of a class as among
+/// 100,000, which rates of the graph of all takes are for.
+double crowding(double frames);
+
 struct Rates {
     std::string machine;  ///< processor, for whoever reads the file
     std::string version;  ///< of the program that was measured
@@ -41,7 +50,9 @@ struct Rates {
     ShardRates frames;
     ShardRates features;
     PoseRates poses;
-    ShardRates neighbors;   ///< a neighbour is two values
+    ShardRates neighbors;         ///< a neighbour is two values
+    ShardRates corpus_neighbors;  ///< a neighbour is three values, see crowding()
+    SearchRates search;
     ShardRates segments;    ///< of one file; a value is a frame at the effector rate
     ShardRates primitives;  ///< likewise
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +49,8 @@ struct StageTask {
     std::filesystem::path output;  ///< final name in the run folder
     ArtifactHeader header;
     const Shard* shard = nullptr;  ///< null for stages that make one file
-    /// Finished inputs: those of the same shard for a sharded stage, else of all shards in order.
+    /// Finished inputs: those of the same shard for a sharded stage, else, or when it reads all
+    /// shards, of all in order.
     std::vector<FinishedWork> inputs;
 
     /// The inputs that a stage made.
@@ -64,10 +66,14 @@ struct StageRow {
     std::string name;                 ///< also the artifact's name
     std::vector<std::string> inputs;  ///< stages before it whose artifacts it reads
     bool sharded;  ///< one file a shard, each made by one rank, or one file made by all together
-    int format_version;  ///< raised when the same inputs give another result
+    bool reads_all_shards = false;  ///< of a sharded stage: each file is made of the whole corpus
+    int format_version;             ///< raised when the same inputs give another result
     std::string description;
     StageResult (*make)(const StageContext&, const StageTask&);
+    std::string switched_on_by = {};  ///< name of the option that asks for it; "": always made
 
+    /// Whether a run with these options makes it.
+    bool is_wanted(const ReindexOptions& options) const;
     std::string file_name(const Shard* shard) const;
 };
 
@@ -76,11 +82,15 @@ const std::vector<StageRow>& stage_table();
 /// Throws UsageError listing the names when there is none of that name.
 const StageRow& stage_named(std::string_view name);
 
+/// Throws UsageError for the name of no stage, and of one that the options leave out.
+void require_wanted(const std::set<std::string>& stages, const ReindexOptions& options);
+
 StageResult make_frames(const StageContext& context, const StageTask& task);
 StageResult make_features(const StageContext& context, const StageTask& task);
 StageResult make_pose_clusters(const StageContext& context, const StageTask& task);
 StageResult make_motion_strings(const StageContext& context, const StageTask& task);
 StageResult make_neighbors(const StageContext& context, const StageTask& task);
+StageResult make_corpus_neighbors(const StageContext& context, const StageTask& task);
 StageResult make_segments(const StageContext& context, const StageTask& task);
 StageResult make_primitives(const StageContext& context, const StageTask& task);
 

@@ -1,5 +1,5 @@
-// The neighbour store: shards of the neighbourhood graphs of takes (S3 §3), one HDF5 group a class
-// of skeletons; layout in docs/artifacts.md.
+// The neighbour store: shards of neighbourhood graphs (S3 §3), each take by itself or all takes of
+// a class together; one HDF5 group a class of skeletons; layout in docs/artifacts.md.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,17 @@ struct NeighborClip {
     double radius = 0;       ///< cm, that its neighbours were searched within
 };
 
-/// Frame i of a clip has neighbours [offsets[i], offsets[i + 1]), by frame.
+enum class NeighborScope {
+    take,    ///< neighbours are frames of the same clip
+    corpus,  ///< neighbours are frames of any clip of the class
+};
+
+/// Frame i of a clip has neighbours [offsets[i], offsets[i + 1]), by clip and frame.
 struct StoredNeighbors {
     std::vector<int64_t> offsets;     ///< frames + 1
-    std::vector<int32_t> neighbours;  ///< frames of the clip, at the effector rate
+    std::vector<int32_t> neighbours;  ///< frames of a clip, at the effector rate
     std::vector<float> distances;     ///< cm, of stacked features
+    std::vector<int64_t> clips{};     ///< id of each neighbour's clip; empty of NeighborScope::take
 };
 
 /// Writes the graphs of one shard, clips of a class in name order.
@@ -34,10 +40,12 @@ class NeighborShardWriter {
   public:
     /// `effector_rate`: frames a second that frames count at.
     NeighborShardWriter(const std::filesystem::path& path, const ArtifactHeader& header,
-                        const WriteOptions& options, double effector_rate);
+                        const WriteOptions& options, double effector_rate,
+                        NeighborScope scope = NeighborScope::take);
     /// The arrays are those of StoredNeighbors.
     void add(const NeighborClip& clip, std::span<const int64_t> offsets,
-             std::span<const int32_t> neighbours, std::span<const float> distances);
+             std::span<const int32_t> neighbours, std::span<const float> distances,
+             std::span<const int64_t> clips = {});
     ArtifactRecord close();
 
   private:
@@ -45,6 +53,7 @@ class NeighborShardWriter {
 
     ArtifactWriter file_;
     double effector_rate_;
+    NeighborScope scope_;
     std::set<std::string> classes_;
 };
 
