@@ -1,6 +1,6 @@
 // How fast are the nearest frames found, against FLANN, nanoflann and a plain scan by products?
 //
-//   knn_bench CORPUS [--queries N] [--turns N] [--threads N] [--radius CM] [--neighbours K]
+//   knn_bench CORPUS [--queries N] [--turns N] [--threads N] [--radius CM…] [--neighbours K]
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
 //       --queries     frames that are asked for, in runs of 64 (default: 2048)
 //       --leaf        rows in a leaf of FLANN's and nanoflann's tree (default: 10, as theirs)
@@ -23,7 +23,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <nanoflann.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +31,10 @@
 #include "kinetome/base/parallel.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/math/knn.h"
+#include "knn_lists.h"
+#ifdef KINETOME_WITH_NANOFLANN
+#include "nanoflann_search.h"
+#endif
 #include "takes.h"
 
 namespace {
@@ -46,7 +49,14 @@ struct Options {
     int turns = 5;
     int threads = 1;
     int leaf = 10;
-    KnnOptions knn{64, 128};
+    std::vector<double> radii = {64, 72};  ///< cm: the paper's and ours
+    int64_t neighbours = 128;
+};
+
+/// What one comparison asks for.
+struct Question {
+    KnnOptions knn;
+    int leaf = 10;
     float squared_radius() const { return static_cast<float>(knn.radius * knn.radius); }
 };
 
@@ -80,21 +90,21 @@ MatrixF sample(const MatrixF& rows, int64_t count) {
     return queries;
 }
 
-using Lists = std::vector<std::vector<std::pair<float, size_t>>>;  ///< squared distance and row
-
 class Flann {
   public:
-    Flann(const MatrixF& rows, const Options& options)
-        : options_(options), tree_(as_flann(rows), flann::KDTreeSingleIndexParams(options.leaf)) {
+    Flann(const MatrixF& rows, const Question& question)
+        : question_(question),
+          tree_(as_flann(rows), flann::KDTreeSingleIndexParams(question.leaf)) {
         tree_.buildIndex();
     }
     Lists search(const MatrixF& queries, int cores) {
         flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED, 0, true);
-        parameters.max_neighbors = static_cast<int>(options_.knn.neighbours);
+        parameters.max_neighbors = static_cast<int>(question_.knn.neighbours);
         parameters.cores = cores;
         std::vector<std::vector<size_t>> rows;
         std::vector<std::vector<float>> squared;
-        tree_.radiusSearch(as_flann(queries), rows, squared, options_.squared_radius(), parameters);
+        tree_.radiusSearch(as_flann(queries), rows, squared, question_.squared_radius(),
+                           parameters);
         Lists lists(rows.size());
         for (size_t q = 0; q < rows.size(); ++q)
             for (size_t i = 0; i < rows[q].size(); ++i)
@@ -106,57 +116,15 @@ class Flann {
     static flann::Matrix<float> as_flann(const MatrixF& rows) {
         return {const_cast<float*>(rows.data()), size_t(rows.rows()), size_t(rows.cols())};
     }
-    const Options& options_;
+    const Question& question_;
     flann::KDTreeSingleIndex<flann::L2<float>> tree_;
-};
-
-class Nanoflann {
-  public:
-    Nanoflann(const MatrixF& rows, const Options& options)
-        : options_(options),
-          points_{rows},
-          tree_(int(rows.cols()), points_,
-                nanoflann::KDTreeSingleIndexAdaptorParams(size_t(options.leaf))) {
-        tree_.buildIndex();
-    }
-    Lists search(const MatrixF& queries, int threads) const {
-        const auto most = static_cast<size_t>(options_.knn.neighbours);
-        Lists lists(size_t(queries.rows()));
-        parallel_for(threads, queries.rows(), [&](int64_t q) {
-            std::vector<uint32_t> rows(most);
-            std::vector<float> squared(most);
-            nanoflann::KNNResultSet<float, uint32_t> found(most);
-            found.init(rows.data(), squared.data());
-            squared.back() = options_.squared_radius();  // it takes what is nearer than its last
-            tree_.findNeighbors(found, queries.row(q).data(), nanoflann::SearchParams());
-            for (size_t i = 0; i < found.size(); ++i)
-                lists[size_t(q)].emplace_back(squared[i], rows[i]);
-        });
-        return lists;
-    }
-
-  private:
-    struct Points {
-        const MatrixF& rows;
-        size_t kdtree_get_point_count() const { return size_t(rows.rows()); }
-        float kdtree_get_pt(size_t row, size_t column) const {
-            return rows(int64_t(row), int64_t(column));
-        }
-        template <class Box>
-        bool kdtree_get_bbox(Box&) const {
-            return false;
-        }
-    };
-    const Options& options_;
-    Points points_;
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Adaptor<float, Points>, Points> tree_;
 };
 
 /// All squared distances as |a|² + |b|² - 2ab, by Eigen's matrix product.
 class ProductScan {
   public:
-    ProductScan(const MatrixF& rows, const Options& options)
-        : options_(options),
+    ProductScan(const MatrixF& rows, const Question& question)
+        : question_(question),
           centre_(rows.colwise().mean()),
           rows_(rows.rowwise() - centre_),
           squares_(rows_.rowwise().squaredNorm()) {}
@@ -177,7 +145,7 @@ class ProductScan {
     void scan(const MatrixF& queries, int64_t first_query, Lists& lists) const {
         constexpr int64_t rows_at_once = 1024;
         const VectorF squares = queries.rowwise().squaredNorm();
-        std::vector<float> limits(size_t(queries.rows()), options_.squared_radius());
+        std::vector<float> limits(size_t(queries.rows()), question_.squared_radius());
         MatrixF products;
         for (int64_t first = 0; first < rows_.rows(); first += rows_at_once) {
             const int64_t count = std::min(rows_at_once, rows_.rows() - first);
@@ -196,24 +164,27 @@ class ProductScan {
             std::sort(lists[size_t(first_query + q)].begin(), lists[size_t(first_query + q)].end());
     }
     float keep_nearest(std::vector<std::pair<float, size_t>>& list, float limit) const {
-        const auto most = static_cast<size_t>(options_.knn.neighbours);
+        const auto most = static_cast<size_t>(question_.knn.neighbours);
         if (list.size() <= most) return limit;
         std::nth_element(list.begin(), list.begin() + int64_t(most) - 1, list.end());
         list.resize(most);
         return list.back().first;
     }
 
-    const Options& options_;
+    const Question& question_;
     Eigen::RowVectorXf centre_;
     MatrixF rows_;
     VectorF squares_;
 };
 
 struct Engine {
+    Engine(std::string engine_name, std::function<void()> to_build, std::function<void()> to_search)
+        : name(std::move(engine_name)), build(std::move(to_build)), search(std::move(to_search)) {}
+
     std::string name;
     std::function<void()> build, search;
-    Cost built;
-    std::vector<double> wall, cpu;
+    Cost built{};
+    std::vector<double> wall{}, cpu{};
 };
 
 void print_table(const std::vector<Engine>& engines, int64_t queries) {
@@ -285,45 +256,43 @@ void print_cores(Flann& flann, const MatrixF& queries, int threads) {
     }
 }
 
-bool compare(const Options& options, double rate) {
-    const MatrixF rows = corpus_rows(options.corpus, rate, options.threads);
+/// FLANN's CPU time as a multiple of ours.
+struct Ratio {
+    double rate = 0;
+    double radius = 0;
+    double times = 0;
+};
+
+/// False when FLANN found something else.
+bool compare(const Options& options, double radius, double rate, const MatrixF& rows,
+             std::vector<Ratio>& ratios) {
+    const Question question{{radius, options.neighbours}, options.leaf};
     const MatrixF queries = sample(rows, options.queries);
+    const int threads = options.threads;
     std::unique_ptr<KnnIndex> blocks;
     std::unique_ptr<Flann> flann;
-    std::unique_ptr<Nanoflann> nanoflann;
     std::unique_ptr<ProductScan> scan;
     NeighbourLists ours;
     Lists theirs, others;
-    const int threads = options.threads;
     std::vector<Engine> engines;
-    engines.push_back(
-        {"blocks",
-         [&] { blocks = std::make_unique<KnnIndex>(rows, KnnEngine::blocks, threads); },
-         [&] { ours = blocks->search(queries, options.knn, threads); },
-         {},
-         {},
-         {}});
-    engines.push_back({"FLANN",
-                       [&] { flann = std::make_unique<Flann>(rows, options); },
-                       [&] { theirs = flann->search(queries, threads); },
-                       {},
-                       {},
-                       {}});
-    engines.push_back({"nanoflann",
-                       [&] { nanoflann = std::make_unique<Nanoflann>(rows, options); },
-                       [&] { others = nanoflann->search(queries, threads); },
-                       {},
-                       {},
-                       {}});
-    engines.push_back({"scan by products",
-                       [&] { scan = std::make_unique<ProductScan>(rows, options); },
-                       [&] { others = scan->search(queries, threads); },
-                       {},
-                       {},
-                       {}});
+    engines.emplace_back(
+        "blocks", [&] { blocks = std::make_unique<KnnIndex>(rows, KnnEngine::blocks, threads); },
+        [&] { ours = blocks->search(queries, question.knn, threads); });
+    engines.emplace_back(
+        "FLANN", [&] { flann = std::make_unique<Flann>(rows, question); },
+        [&] { theirs = flann->search(queries, threads); });
+#ifdef KINETOME_WITH_NANOFLANN
+    std::unique_ptr<NanoflannSearch> nanoflann;
+    engines.emplace_back(
+        "nanoflann",
+        [&] { nanoflann = std::make_unique<NanoflannSearch>(rows, question.knn, question.leaf); },
+        [&] { others = nanoflann->search(queries, threads); });
+#endif
+    engines.emplace_back(
+        "scan by products", [&] { scan = std::make_unique<ProductScan>(rows, question); },
+        [&] { others = scan->search(queries, threads); });
     fmt::print("\n{} frames at {} Hz, {} queries, radius {} cm, {} neighbours, {} threads\n",
-               rows.rows(), rate, queries.rows(), options.knn.radius, options.knn.neighbours,
-               threads);
+               rows.rows(), rate, queries.rows(), radius, options.neighbours, threads);
     for (Engine& engine : engines) engine.built = cost_of(engine.build);
     for (int turn = 0; turn < options.turns; ++turn) {
         for (Engine& engine : engines) {
@@ -333,10 +302,28 @@ bool compare(const Options& options, double rate) {
         }
     }
     print_table(engines, queries.rows());
-    const Cost all = cost_of([&] { blocks->search(rows, options.knn, threads); });
+    ratios.push_back({rate, radius, median(engines[1].cpu) / median(engines[0].cpu)});
+    const Cost all = cost_of([&] { blocks->search(rows, question.knn, threads); });
     fmt::print("blocks, every frame: {:.2f} s of CPU, {:.2f} s wall\n", all.cpu, all.wall);
     print_cores(*flann, queries, threads);
     return agree(ours, theirs, rows, queries);
+}
+
+bool compare_all(const Options& options) {
+    bool agreed = true;
+    std::vector<Ratio> ratios;
+    for (const double rate : {120.0, 30.0}) {
+        const MatrixF rows = corpus_rows(options.corpus, rate, options.threads);
+        for (const double radius : options.radii) {
+            agreed &= compare(options, radius, rate, rows, ratios);
+        }
+    }
+    fmt::print("\nFLANN's CPU time, times ours, on {} threads each:\n", options.threads);
+    for (const Ratio& one : ratios) {
+        fmt::print("  {:>3} Hz, radius {} cm, {} neighbours: {:.1f}\n", one.rate, one.radius,
+                   options.neighbours, one.times);
+    }
+    return agreed;
 }
 
 }  // namespace
@@ -353,13 +340,11 @@ int main(int argc, char** argv) {
     app.add_option("--leaf", options.leaf, "rows in a leaf of the trees")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("--radius", options.knn.radius, "cm")->capture_default_str();
-    app.add_option("--neighbours", options.knn.neighbours)->capture_default_str();
+    app.add_option("--radius", options.radii, "cm, one or several")->capture_default_str();
+    app.add_option("--neighbours", options.neighbours)->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {
-        bool agreed = true;
-        for (const double rate : {120.0, 30.0}) agreed &= compare(options, rate);
-        return agreed ? 0 : 1;
+        return compare_all(options) ? 0 : 1;
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());
         return 70;
