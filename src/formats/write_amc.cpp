@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "degrees.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/euler.h"
 #include "kinetome/formats/number_text.h"
@@ -13,7 +14,6 @@
 namespace kinetome {
 namespace {
 
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 constexpr int amc_decimals = 5;
 
 void check_asf_can_hold(const Joint& joint) {

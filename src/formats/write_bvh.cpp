@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "degrees.h"
 #include "kinetome/formats/euler.h"
 #include "kinetome/formats/kinematics.h"
 #include "kinetome/formats/number_text.h"
@@ -19,7 +20,6 @@ namespace kinetome {
 namespace {
 
 constexpr int bvh_decimals = 6;
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 constexpr std::array<int, 3> x_acts_first = {0, 1, 2};
 
 bool has_translation(const Joint& joint) {

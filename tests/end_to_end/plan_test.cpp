@@ -241,6 +241,14 @@ nanoseconds_per_value = 0
 serial_share = 0
 [search]
 nanoseconds_per_row = 0
+[segments]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
+[primitives]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
 [poses]
 seconds_per_file = 0
 moments_nanoseconds_per_row = 0

@@ -4,7 +4,7 @@
 
 using namespace kinetome;
 
-TEST_CASE("labels are found, correct or missed; abstentions are missed") {
+TEST_CASE("labels are found, correct or missed, abstentions missed") {
     const std::vector<int32_t> truth{0, 0, 0, 0, 1, 1, -1, 2};
     const std::vector<int32_t> given{0, 0, -1, 1, 1, -1, 1, -1};
     const LabelTable table = label_table(truth, given, 4);

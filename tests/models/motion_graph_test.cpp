@@ -121,7 +121,8 @@ TEST_CASE("strong components, reach and shortest paths are those of a plain sear
 }
 
 TEST_CASE(
-    "components are numbered by their lowest node; a lone node is a cycle if it follows itself") {
+    "components are numbered by their lowest node, and a lone node is a cycle if it follows "
+    "itself") {
     const MotionGraph graph = graph_of(5, {{3, 1}, {1, 3}, {3, 4}, {4, 4}, {0, 2}});
     const auto components = strong_components(graph);
     CHECK(components.nodes == std::vector<std::vector<int32_t>>{{0}, {1, 3}, {2}, {4}});

@@ -58,7 +58,7 @@ TEST_CASE("segments that cannot be are refused, naming the line") {
     CHECK_THROWS_WITH(parse_segments_csv("clip,first\n", "s.csv", 30), Contains("s.csv:1: "));
 }
 
-TEST_CASE("primitives of takes are read by frame; they do not overlap") {
+TEST_CASE("primitives of takes are read by frame, and do not overlap") {
     const auto takes = primitives_in("a,50,60,40,2,\na,40,50,40,1,\"walk\"\n");
     REQUIRE(takes.size() == 1);
     CHECK(takes[0].primitives == std::vector<RowRange>{{40, 50}, {50, 60}});
