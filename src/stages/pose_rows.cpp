@@ -39,9 +39,10 @@ void lay_out(const Survey& survey, PosePartition& partition) {
     partition.layout = layout_pieces(extents);
 }
 
-}  // namespace
-
-MatrixF PosePartition::read(const RowRange& range) const {
+/// Rows of a partition that read(clip, first row in its shard, count) brings, clip by clip.
+template <class Read>
+MatrixF read_clips(const std::vector<PartitionClip>& clips, const RowRange& range,
+                   const Read& read_clip) {
     auto clip =
         std::upper_bound(clips.begin(), clips.end(), range.first,
                          [](int64_t row, const PartitionClip& c) { return row < c.first_row; });
@@ -51,13 +52,42 @@ MatrixF PosePartition::read(const RowRange& range) const {
         const int64_t skip = range.first + done - clip->first_row;
         const int64_t count = std::min(clip->place.pose_rows - skip, range.size() - done);
         if (count <= 0) continue;  // a clip without rows
-        const MatrixF part = clip->shard->pose_vectors(clip->place.clip_class,
-                                                       clip->place.first_pose_row + skip, count);
+        const MatrixF part = read_clip(*clip, clip->place.first_pose_row + skip, count);
         if (!rows.size()) rows.resize(range.size(), part.cols());
         rows.middleRows(done, count) = part;
         done += count;
     }
     return rows;
+}
+
+using ClassClips = std::map<std::string, std::vector<PartitionClip>>;
+
+/// Clips in name order, by class.
+ClassClips clips_by_class(const StageContext& context,
+                          const std::vector<const FinishedWork*>& features) {
+    ClassClips classes;
+    for (const FinishedWork* work : features) {
+        const auto shard =
+            std::make_shared<const FeatureShardReader>(context.workspace.open(*work));
+        for (const FeatureShardClip& clip : shard->clips()) {
+            classes[clip.clip_class].push_back({clip, shard, 0});
+        }
+    }
+    return classes;
+}
+
+}  // namespace
+
+MatrixF PosePartition::read(const RowRange& range) const {
+    return read_clips(clips, range, [](const PartitionClip& clip, int64_t first, int64_t count) {
+        return clip.shard->pose_vectors(clip.place.clip_class, first, count);
+    });
+}
+
+MatrixF PosePartition::read_markers(const RowRange& range) const {
+    return read_clips(clips, range, [](const PartitionClip& clip, int64_t first, int64_t count) {
+        return clip.shard->markers(clip.place.clip_class, first, count);
+    });
 }
 
 FeatureClass PosePartition::feature_class() const {
@@ -66,14 +96,7 @@ FeatureClass PosePartition::feature_class() const {
 
 std::vector<PosePartition> pose_partitions(const StageContext& context,
                                            const std::vector<const FinishedWork*>& features) {
-    std::map<std::string, std::vector<PartitionClip>> classes;
-    for (const FinishedWork* work : features) {
-        const auto shard =
-            std::make_shared<const FeatureShardReader>(context.workspace.open(*work));
-        for (const FeatureShardClip& clip : shard->clips()) {
-            classes[clip.clip_class].push_back({clip, shard, 0});
-        }
-    }
+    ClassClips classes = clips_by_class(context, features);
     std::map<std::string, std::string> source_of;
     for (const Take& take : context.survey.takes) source_of[take.name] = take.source;
 
@@ -95,6 +118,17 @@ std::vector<PosePartition> pose_partitions(const StageContext& context,
     std::vector<PosePartition> result;
     for (auto& [path, partition] : partitions) {
         partition.path = path;
+        lay_out(context.survey, partition);
+        result.push_back(std::move(partition));
+    }
+    return result;
+}
+
+std::vector<PosePartition> class_partitions(const StageContext& context,
+                                            const std::vector<const FinishedWork*>& features) {
+    std::vector<PosePartition> result;
+    for (auto& [clip_class, clips] : clips_by_class(context, features)) {
+        PosePartition partition{clip_class, "/" + clip_class, std::move(clips), {}};
         lay_out(context.survey, partition);
         result.push_back(std::move(partition));
     }

@@ -125,6 +125,11 @@ MatrixF FeatureShardReader::pose_vectors(const std::string& clip_class, int64_t 
     return file_.read_matrix(at(clip_class, "pose_vectors"), first, count);
 }
 
+MatrixF FeatureShardReader::markers(const std::string& clip_class, int64_t first,
+                                    int64_t count) const {
+    return file_.read_matrix(at(clip_class, "markers"), first, count);
+}
+
 MatrixF FeatureShardReader::effectors(const std::string& clip_class, int64_t first,
                                       int64_t count) const {
     return file_.read_matrix(at(clip_class, "effectors"), first, count);

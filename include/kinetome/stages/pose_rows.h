@@ -21,22 +21,29 @@ struct PartitionClip {
     int64_t first_row = 0;  ///< in the partition
 };
 
-/// Rows that share principal components, clusters and letters.
+/// Rows that share a model: principal components, clusters and letters, or a pose hierarchy.
 struct PosePartition {
     std::string clip_class;
-    std::string path;  ///< HDF5 group: "/<class>/all" or "/<class>/subject-<subject>"
+    std::string path;  ///< HDF5 group: "/<class>/all" or "/<class>/subject-<subject>"; of a whole
+                       ///< class: "/<class>"
     std::vector<PartitionClip> clips;
     PieceLayout layout;
 
     int64_t rows() const { return layout.rows(); }
     /// Pose vectors of a run of rows, count × columns. Thread-safe.
     MatrixF read(const RowRange& range) const;
+    /// Normalised markers of a run of rows, count × 3·joints, cm. Thread-safe.
+    MatrixF read_markers(const RowRange& range) const;
     FeatureClass feature_class() const;
 };
 
 /// All partitions, ordered by path. `features` are the finished feature shards in clip order.
 std::vector<PosePartition> pose_partitions(const StageContext& context,
                                            const std::vector<const FinishedWork*>& features);
+
+/// One partition a class, ordered by class.
+std::vector<PosePartition> class_partitions(const StageContext& context,
+                                            const std::vector<const FinishedWork*>& features);
 
 /// What the subjects of the takes add to a key: nothing unless --partition may use them.
 Digest subjects_digest(const Survey& survey, const PartitionOptions& options);

@@ -70,6 +70,7 @@ class FeatureShardReader {
     const std::vector<FeatureShardClip>& clips() const { return clips_; }
     FeatureClass feature_class(const std::string& name) const;
     MatrixF pose_vectors(const std::string& clip_class, int64_t first, int64_t count) const;
+    MatrixF markers(const std::string& clip_class, int64_t first, int64_t count) const;
     MatrixF effectors(const std::string& clip_class, int64_t first, int64_t count) const;
 
   private:
