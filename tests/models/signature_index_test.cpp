@@ -1,0 +1,193 @@
+#include "kinetome/models/signature_index.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "kinetome/base/random.h"
+
+using namespace kinetome;
+
+namespace {
+
+constexpr int32_t leaf_count = 60;
+
+/// Of means spread over half a metre.
+MatrixF random_positions() {
+    RandomStream random(4, "leaves");
+    MatrixD means(leaf_count, 12);
+    for (Eigen::Index i = 0; i < means.size(); ++i) means.data()[i] = 50 * random.uniform();
+    return leaf_positions(means);
+}
+
+/// Clips that walk at random among the leaves nearest to each other.
+std::vector<Signature> random_clips(int64_t count, const MatrixF& positions) {
+    std::vector<Signature> clips;
+    for (int64_t clip = 0; clip < count; ++clip) {
+        RandomStream random(7, "clip", static_cast<uint64_t>(clip));
+        std::vector<int32_t> leaves;
+        const auto frames = 300 + random.below(1500);
+        auto leaf = static_cast<int32_t>(random.below(leaf_count));
+        while (leaves.size() < frames) {
+            leaves.insert(leaves.end(), 1 + random.below(25), leaf);
+            const VectorF near = (positions.rowwise() - positions.row(leaf)).rowwise().norm();
+            const auto other = static_cast<int32_t>(random.below(leaf_count));
+            if (other != leaf && near[other] < near.mean()) leaf = other;
+        }
+        leaves.resize(frames);
+        clips.push_back(make_signature(leaves));
+    }
+    return clips;
+}
+
+struct Example {
+    MatrixF positions = random_positions();
+    std::vector<Signature> clips = random_clips(40, positions);
+    SignatureIndex index{clips, positions, {}, 1};
+};
+
+/// Every `1 / factor`-th frame of some of a clip.
+Signature at_tempo(const Signature& clip, const RowRange& frames, double factor) {
+    std::vector<int32_t> leaves;
+    const auto count = static_cast<int64_t>(double(frames.size()) * factor);
+    for (int64_t i = 0; i < count; ++i) {
+        const auto frame = frames.first + static_cast<int64_t>(double(i) / factor);
+        leaves.push_back(clip[static_cast<size_t>(run_at(clip, frame))].leaf);
+    }
+    return make_signature(leaves);
+}
+
+/// The nearest match anywhere, without an index.
+SignatureMatch nearest_by_scan(const Example& example, const Signature& query,
+                               const SignatureMatchOptions& options) {
+    SignatureMatch nearest{{}, std::numeric_limits<double>::infinity()};
+    for (const Signature& clip : example.clips) {
+        MatrixF distances(query.size(), clip.size());
+        for (size_t i = 0; i < query.size(); ++i) {
+            for (size_t j = 0; j < clip.size(); ++j) {
+                distances(Eigen::Index(i), Eigen::Index(j)) =
+                    (example.positions.row(query[i].leaf) - example.positions.row(clip[j].leaf))
+                        .norm();
+            }
+        }
+        const auto matches = match_signature(query, clip, distances, options);
+        if (!matches.empty()) nearest = std::min(nearest, matches.front());
+    }
+    return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("positions are as far apart as mean poses are, mm per marker") {
+    MatrixD means = MatrixD::Zero(2, 9);
+    means.row(1) << 0, 0, 0, 3, 0, 4, 0, 5, 0;  // both compared markers are 5 cm away
+    const MatrixF positions = leaf_positions(means);
+    CHECK((positions.row(0) - positions.row(1)).norm() == Approx(50));
+}
+
+TEST_CASE("the index finds what a scan of all signatures finds nearest") {
+    const Example example;
+    SignatureSearchOptions options;
+    options.match.step = 4;
+    for (int64_t clip = 0; clip < 40; clip += 3) {
+        const Signature query = at_tempo(example.clips[size_t(clip)], {40, 280}, 1.2);
+        const auto found = example.index.search(query, 5, options);
+        REQUIRE(found.size() == 5);
+        const auto expected = nearest_by_scan(example, query, options.match);
+        CHECK(found.front().match.distance == Approx(expected.distance).margin(1e-3));
+        CHECK(found.front().clip == clip);
+    }
+}
+
+TEST_CASE("a part of a clip at any tempo finds the clip first") {
+    const Example example;
+    for (const MatchRule rule : {MatchRule::pace, MatchRule::repeats, MatchRule::edit}) {
+        for (const double factor : {0.7, 1.0, 1.4}) {
+            for (int64_t clip = 0; clip < 40; clip += 5) {
+                SignatureSearchOptions options;
+                options.match.rule = rule;
+                const Signature& whole = example.clips[size_t(clip)];
+                const auto some =
+                    example.index.search(at_tempo(whole, {20, 240}, factor), 1, options);
+                const RowRange all{0, frame_count(whole)};
+                const auto full = example.index.search(at_tempo(whole, all, factor), 1, options);
+                REQUIRE(some.size() == 1);
+                REQUIRE(full.size() == 1);
+                CHECK(some.front().clip == clip);
+                CHECK(full.front().clip == clip);
+            }
+        }
+    }
+}
+
+TEST_CASE("answers come nearest first and at different places") {
+    const Example example;
+    const Signature query = part_of(example.clips[3], {100, 220});
+    const SignatureSearchOptions options;
+    const auto found = example.index.search(query, 20, options);
+    REQUIRE(found.size() == 20);
+    for (size_t i = 0; i < found.size(); ++i) {
+        const RowRange& frames = found[i].match.frames;
+        CHECK(frames.first >= 0);
+        CHECK(frames.end <= frame_count(example.clips[size_t(found[i].clip)]));
+        for (size_t j = 0; j < i; ++j) {
+            CHECK(found[j].match.distance <= found[i].match.distance);
+            CHECK_FALSE((found[j].clip == found[i].clip &&
+                         is_same_place(found[j].match.frames, frames, options.match.overlap)));
+        }
+    }
+    CHECK(std::ranges::equal(example.index.search(query, 7, options), std::span(found).first(7)));
+}
+
+TEST_CASE("exact matches are all of those there are") {
+    const Example example;
+    SignatureSearchOptions options;
+    options.match.tolerance = 0;
+    for (const int64_t runs : {1, 2, 3}) {
+        const auto whole = std::span(example.clips[5]);
+        Signature query(whole.begin() + 4, whole.begin() + 4 + runs);
+        const int32_t start = query.front().first_frame;
+        for (SignatureRun& run : query) run.first_frame -= start;
+        size_t expected = 0;
+        for (const Signature& clip : example.clips) expected += exact_matches(query, clip).size();
+        options.match.overlap = 1;
+        const auto found = example.index.search(query, 1000000, options);
+        CHECK(found.size() == expected);
+        CHECK(std::ranges::all_of(found, [](const auto& one) { return one.match.distance == 0; }));
+    }
+}
+
+TEST_CASE("an index is the same for any number of threads, and out of its parts") {
+    const Example example;
+    const SignatureIndex threaded(example.clips, example.positions, {}, 3);
+    const auto& expected = example.index.parts();
+    CHECK(threaded.parts().near_leaves.values == expected.near_leaves.values);
+    CHECK(threaded.parts().occurrences.values == expected.occurrences.values);
+    const SignatureIndex again(expected);
+    const Signature query = part_of(example.clips[9], {10, 190});
+    CHECK(again.search(query, 10, {}) == example.index.search(query, 10, {}));
+}
+
+TEST_CASE("parts that do not fit make no index") {
+    const Example example;
+    auto parts = example.index.parts();
+    parts.clips.values.front().leaf = leaf_count;
+    CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+    parts = example.index.parts();
+    parts.occurrences.values.front() = static_cast<int32_t>(parts.clips.values.size());
+    CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+    parts = example.index.parts();
+    parts.near_leaves.first.pop_back();
+    CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+    CHECK_THROWS_AS(SignatureIndex({Signature{{leaf_count, 0, 4}}}, example.positions, {}, 1),
+                    std::invalid_argument);
+}
+
+TEST_CASE("an empty index and an empty query have no answers") {
+    const SignatureIndex empty({}, random_positions(), {}, 1);
+    CHECK(empty.search(Signature{{3, 0, 40}}, 10, {}).empty());
+    CHECK(Example().index.search({}, 10, {}).empty());
+    const SignatureIndex short_clips({Signature{{3, 0, 1}}, {}}, random_positions(), {}, 1);
+    CHECK(short_clips.search(Signature{{3, 0, 1}}, 10, {}).size() == 1);
+}
