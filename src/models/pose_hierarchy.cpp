@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "plane.h"
+
 namespace kinetome {
 namespace {
 
@@ -48,11 +50,9 @@ VectorD principal_values(const PoseHierarchy& hierarchy, std::span<const float> 
 }
 
 double distance_above(const PoseHierarchy& hierarchy, int32_t node, const VectorD& principal) {
-    double along = 0;
-    for (Eigen::Index i = 0; i < principal.size(); ++i) {
-        along += hierarchy.normals(node, i) * principal[i];
-    }
-    return along - hierarchy.nodes[static_cast<size_t>(node)].offset;
+    return along_normal(hierarchy.normals.data() + node * principal.size(), principal.data(),
+                        principal.size()) -
+           hierarchy.nodes[static_cast<size_t>(node)].offset;
 }
 
 int32_t leaf_of(const PoseHierarchy& hierarchy, const VectorD& principal) {

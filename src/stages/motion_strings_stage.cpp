@@ -38,7 +38,7 @@ void unpack(Unpacker& in, PartitionString& spelled) {
 PartitionString spell(const StageContext& context, const PosePartition& partition,
                       const StoredPoseClusters& model, const Workers& workers) {
     const StringOptions& options = context.options.motion_strings;
-    const ProjectedRows rows(partition, model.pca, workers, 0, context.stop);
+    const KeptRows rows = projected_rows(partition, model.pca, workers, 0, context.stop);
     const std::vector<int32_t> letters = likeliest_clusters(model.mixture, rows, workers);
     PartitionString result;
     if (!workers.is_root()) return result;

@@ -88,7 +88,7 @@ FittedPartition fit(const StageContext& context, const PosePartition& partition,
     const PoseClusterOptions& options = context.options.pose_clusters;
     FittedPartition fitted;
     fitted.pca = principal_components(context, partition, workers);
-    const ProjectedRows rows(
+    const KeptRows rows = projected_rows(
         partition, fitted.pca, workers,
         bytes_for_rows(context, partition, fitted.pca.dimension(), options, workers), context.stop);
     const auto earlier = earlier_progress(checkpoint, workers);

@@ -35,7 +35,7 @@ VectorD at(double x, double y) {
     return Eigen::Vector2d(x, y);
 }
 
-TEST_CASE("A pose falls in the leaf on its side of every plane", "[pose_hierarchy]") {
+TEST_CASE("a pose falls in the leaf on its side of every plane") {
     const PoseHierarchy hierarchy = three_leaves();
     CHECK(leaf_of(hierarchy, at(-1, 1)) == 0);
     CHECK(leaf_of(hierarchy, at(1, -1)) == 1);
@@ -48,7 +48,7 @@ TEST_CASE("A pose falls in the leaf on its side of every plane", "[pose_hierarch
     CHECK_THROWS_AS(leaves_of(hierarchy, MatrixF::Zero(1, 5)), std::invalid_argument);
 }
 
-TEST_CASE("Soft leaves pass over a plane without a jump", "[pose_hierarchy]") {
+TEST_CASE("soft leaves pass over a plane without a jump") {
     const PoseHierarchy hierarchy = three_leaves();
     CHECK(soft_leaves(hierarchy, at(-0.1, 0.1), 0) == std::vector<LeafWeight>{{0, 1}});
     CHECK(soft_leaves(hierarchy, at(1, 0.1), 0.3)[0].leaf == 1);
@@ -72,15 +72,14 @@ TEST_CASE("Soft leaves pass over a plane without a jump", "[pose_hierarchy]") {
     CHECK(before[1] == Approx(1.0 / 12));
 }
 
-TEST_CASE("Distances between leaves are in mm and leave the origin out", "[pose_hierarchy]") {
+TEST_CASE("distances between leaves are in mm and leave the origin out") {
     const PoseHierarchy hierarchy = three_leaves();
     CHECK(leaf_distance(hierarchy, 1, 2) == Approx(20));
     CHECK(leaf_distance(hierarchy, 0, 0) == 0);
     CHECK(compared_markers(93) == 30);
 }
 
-TEST_CASE("A pose of a leaf's line comes back whole, another without what is off it",
-          "[pose_hierarchy]") {
+TEST_CASE("a pose of a leaf's line comes back whole, another without what is off it") {
     const PoseHierarchy hierarchy = three_leaves();
     const std::vector<float> pose{0, 0, 0, -2, 0, 0.5F};
     const VectorD coordinates = leaf_coordinates(hierarchy, 0, pose);
@@ -93,7 +92,7 @@ TEST_CASE("A pose of a leaf's line comes back whole, another without what is off
           Approx(2.5));
 }
 
-TEST_CASE("A hierarchy travels whole", "[pose_hierarchy]") {
+TEST_CASE("a hierarchy travels whole") {
     const PoseHierarchy hierarchy = three_leaves();
     const auto copy = unpacked<PoseHierarchy>(packed(hierarchy));
     CHECK(packed(copy) == packed(hierarchy));

@@ -1,0 +1,85 @@
+#include "kinetome/models/marker_maps.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace kinetome {
+namespace {
+
+constexpr double mm_per_cm = 10;
+
+/// The solution of least norm of A x = b for a symmetric A without negative eigenvalues.
+MatrixD least_norm_solution(const MatrixD& a, const MatrixD& b) {
+    if (a.rows() == 0) return b;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
+    const VectorD& values = solver.eigenvalues();
+    const double least = 1e-12 * std::max(values[values.size() - 1], 0.0);
+    const VectorD inverse = values.unaryExpr([&](double v) { return v > least ? 1 / v : 0.0; });
+    return solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() * b));
+}
+
+/// What the parent's map weighs, as sums over poses.
+MatrixD parent_part(const MarkerMap* parent, int64_t principal, const MarkerMapOptions& options) {
+    const double noise = options.noise / mm_per_cm;
+    MatrixD part = MatrixD::Identity(principal, principal) * (noise * noise);
+    if (parent) part += options.parent_weight * parent->principal_covariance;
+    return part;
+}
+
+}  // namespace
+
+MarkerMap fit_marker_map(const Moments& poses, const std::vector<int32_t>& principal_columns,
+                         const MarkerMap* parent, const MarkerMapOptions& options) {
+    const std::vector<int32_t> others = estimated_columns(poses.dimension(), principal_columns);
+    const MatrixD inner = poses.scatter(principal_columns, principal_columns);
+    const MatrixD between = poses.scatter(principal_columns, others);
+    MarkerMap result;
+    result.principal_covariance = inner / static_cast<double>(std::max<int64_t>(poses.count, 1));
+    if (options.rule == MarkerMapRule::least_squares) {
+        result.map = least_norm_solution(inner, between);
+        return result;
+    }
+    const MatrixD weight = parent_part(parent, inner.rows(), options);
+    MatrixD target = between;
+    if (parent) target.noalias() += weight * parent->map;
+    result.map = MatrixD(inner + weight).llt().solve(target);
+    return result;
+}
+
+std::vector<int32_t> estimated_columns(int64_t columns,
+                                       const std::vector<int32_t>& principal_columns) {
+    std::vector<int32_t> others;
+    for (int32_t column = 0; column < columns; ++column) {
+        if (!std::ranges::binary_search(principal_columns, column)) others.push_back(column);
+    }
+    return others;
+}
+
+VectorD estimate_pose(const PoseHierarchy& hierarchy, const MarkerMaps& maps,
+                      const VectorD& principal, double band) {
+    const std::vector<int32_t>& known = hierarchy.principal_columns;
+    VectorD others = VectorD::Zero(static_cast<Eigen::Index>(maps.estimated_columns.size()));
+    for (const LeafWeight& near : soft_leaves(hierarchy, principal, band)) {
+        const VectorD mean = hierarchy.means.row(near.leaf);
+        const VectorD from_mean = principal - mean(known);
+        others += near.weight * (mean(maps.estimated_columns) +
+                                 maps.maps[static_cast<size_t>(near.leaf)].transpose() * from_mean);
+    }
+    VectorD pose(hierarchy.columns());
+    pose(known) = principal;
+    pose(maps.estimated_columns) = others;
+    return pose;
+}
+
+void pack(Packer& out, const MarkerMap& map) {
+    pack(out, map.map);
+    pack(out, map.principal_covariance);
+}
+
+void unpack(Unpacker& in, MarkerMap& map) {
+    unpack(in, map.map);
+    unpack(in, map.principal_covariance);
+}
+
+}  // namespace kinetome
