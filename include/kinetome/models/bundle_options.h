@@ -19,7 +19,7 @@ struct MotionBundleOptions {
     double rho = 1;      ///< ρ of Eq. 3: above 1 prefers longer bundles
     double gamma = 0.8;  ///< γ: least ratio between a submotion's length and the bundle's mean
     BundleSpread spread = BundleSpread::depth;  ///< of the matching relation
-    int32_t depth = 2;                          ///< steps of it, where the spread is `depth`
+    int32_t depth = 1;                          ///< steps of it, where the spread is `depth`
     uint64_t seed = 1;                          ///< names the instance of a letter to begin at
 };
 

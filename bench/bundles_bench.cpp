@@ -1,0 +1,242 @@
+// How pure, wide and tall are motion bundles, and how fast are they found?
+//
+//   bundles_bench CORPUS TRUTH [--starts N] [--spread S] [--threads N] [--curve]
+//       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
+//       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cost.h"
+#include "kinetome/formats/annotation.h"
+#include "kinetome/models/bundle_ends.h"
+#include "kinetome/models/bundle_score.h"
+#include "kinetome/models/motion_bundle.h"
+#include "spelled_takes.h"
+
+namespace {
+
+using namespace kinetome;
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path corpus, truth;
+    int starts = 12;
+    int threads = 2;
+    std::string spread;
+    bool curve = false;
+};
+
+using LabelsOfTakes = std::map<std::string, std::vector<TruthRow>>;
+
+LabelsOfTakes read_labels(const fs::path& truth) {
+    LabelsOfTakes labels;
+    for (TruthRow& row : parse_truth_csv(read_source_file(truth), truth.string()))
+        labels[row.clip].push_back(row);
+    return labels;
+}
+
+/// One list a take, empty where it has no labels; a number for each label.
+std::vector<FrameClasses> classes_of(const bench::PoseTakes& takes, const LabelsOfTakes& labels) {
+    std::map<std::string, int32_t> numbers;
+    std::vector<FrameClasses> classes;
+    for (size_t i = 0; i < takes.names.size(); ++i) {
+        FrameClasses of_take;
+        const auto found = labels.find(takes.names[i]);
+        if (found != labels.end()) {
+            of_take.assign(static_cast<size_t>(takes.frames[i]), no_class);
+            for (const TruthRow& row : found->second) {
+                const int32_t number =
+                    numbers.emplace(row.label, static_cast<int32_t>(numbers.size())).first->second;
+                for (int64_t frame = row.first; frame < std::min(row.end, takes.frames[i]); ++frame)
+                    of_take[static_cast<size_t>(frame)] = number;
+            }
+        }
+        classes.push_back(std::move(of_take));
+    }
+    return classes;
+}
+
+struct Found {
+    std::vector<SubstringBundle> bundles;
+    double seconds = 0;
+};
+
+Found find(const bench::SpelledTakes& takes, const MotionBundleOptions& options, int threads,
+           double tau_factor = 1) {
+    AccessibilityMatrix accessible = accessibility(takes.mixture, tau_factor * takes.tau, threads);
+    if (options.spread == BundleSpread::closure_near) {
+        accessible = within_step(accessible, takes.mixture,
+                                 median_adjacent_step(takes.string, takes.mixture));
+    }
+    Found found;
+    found.seconds = bench::cost_of([&] {
+                        found.bundles = find_motion_bundles(takes.string, accessible, takes.lambda,
+                                                            options, {.threads = threads});
+                    }).wall;
+    return found;
+}
+
+BundleScore score(const MotionString& string, const std::vector<SubstringBundle>& bundles,
+                  const std::vector<FrameClasses>& classes) {
+    std::vector<MotionPiece> members;
+    std::vector<int32_t> bundle_of;
+    for (size_t b = 0; b < bundles.size() && !bundles[b].is_degenerate(); ++b) {
+        for (const Substring& member : bundles[b].members) {
+            members.push_back({string.clip[static_cast<size_t>(member.first)],
+                               static_cast<int64_t>(string.mean_frame(member.first)),
+                               static_cast<int64_t>(string.mean_frame(member.last))});
+            bundle_of.push_back(static_cast<int32_t>(b));
+        }
+    }
+    return score_bundles(members, bundle_of, classes);
+}
+
+const std::vector<std::vector<std::string>> labelled_sets = {
+    {"14_14"}, {"13_29"}, {"13_29", "13_30", "13_31"}, {"86_01"}};
+
+std::string name_of(const std::vector<std::string>& takes) {
+    std::string name = takes.front();
+    for (size_t i = 1; i < takes.size(); ++i) name += "+" + takes[i].substr(takes[i].find('_') + 1);
+    return name;
+}
+
+/// Mean and worst over starts of EM.
+void judge(const Options& options, const MotionBundleOptions& bundles, double tau_factor,
+           const std::vector<std::vector<bench::SpelledTakes>>& starts_of_sets,
+           const std::vector<std::vector<FrameClasses>>& classes_of_sets) {
+    for (size_t set = 0; set < labelled_sets.size(); ++set) {
+        double purity = 0, worst = 1, coverage = 0, height = 0, shuffled = 0, least_coverage = 1;
+        std::vector<double> widths, seconds;
+        for (const auto& takes : starts_of_sets[set]) {
+            const Found found = find(takes, bundles, 1, tau_factor);
+            const BundleScore one = score(takes.string, found.bundles, classes_of_sets[set]);
+            purity += one.purity;
+            worst = std::min(worst, one.purity);
+            coverage += one.coverage;
+            least_coverage = std::min(least_coverage, one.coverage);
+            height += one.mean_height;
+            shuffled += one.shuffled;
+            widths.push_back(one.median_width);
+            seconds.push_back(found.seconds);
+        }
+        const double n = options.starts;
+        fmt::print(
+            "{:<14} {:<14} {:>4.2f} {:>4.2f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.1f} "
+            "{:>6.0f} {:>6.2f} {:>6.1f}\n",
+            name_of(labelled_sets[set]), spread_text(bundles), tau_factor, bundles.gamma,
+            purity / n, worst, coverage / n, least_coverage, height / n, bench::median(widths),
+            shuffled / n, 1e3 * bench::median(seconds));
+    }
+}
+
+void judge_labelled_takes(const Options& options) {
+    const LabelsOfTakes labels = read_labels(options.truth);
+    std::vector<std::vector<bench::SpelledTakes>> starts_of_sets;
+    std::vector<std::vector<FrameClasses>> classes_of_sets;
+    for (const auto& names : labelled_sets) {
+        const auto takes = bench::PoseTakes::read(options.corpus, names);
+        classes_of_sets.push_back(classes_of(takes, labels));
+        auto& starts = starts_of_sets.emplace_back();
+        for (int start = 0; start < options.starts; ++start) {
+            PoseClusterOptions clusters;
+            clusters.mixture.seed = static_cast<uint64_t>(start + 1);
+            starts.emplace_back(takes, clusters, options.threads);
+        }
+    }
+    fmt::print(
+        "takes          spread          tau gamma purity worst  cover. least  height  width "
+        "control   ms\n");
+    MotionBundleOptions bundles;
+    if (!options.spread.empty()) parse_spread(options.spread, bundles);
+    judge(options, bundles, 1, starts_of_sets, classes_of_sets);
+    if (!options.curve) return;
+    for (const char* spread : {"closure", "closure-near", "closure-length", "depth:1", "depth:2",
+                               "depth:3", "depth:4"}) {
+        parse_spread(spread, bundles);
+        judge(options, bundles, 1, starts_of_sets, classes_of_sets);
+    }
+}
+
+std::vector<std::string> all_takes(const fs::path& corpus) {
+    std::vector<std::string> names;
+    for (const fs::path& file : bench::amc_files(corpus)) names.push_back(file.stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+/// Labelled takes among all others, letters shared by the takes of a subject or by all.
+void judge_corpus(const Options& options, bool by_subject) {
+    const LabelsOfTakes labels = read_labels(options.truth);
+    std::map<std::string, std::vector<std::string>> partitions;
+    for (const std::string& name : all_takes(options.corpus))
+        partitions[by_subject ? name.substr(0, name.find('_')) : "all"].push_back(name);
+    std::vector<std::pair<bench::SpelledTakes, std::vector<FrameClasses>>> spelled;
+    int64_t frames = 0, letters = 0;
+    for (const auto& [partition, names] : partitions) {
+        const auto takes = bench::PoseTakes::read(options.corpus, names);
+        spelled.emplace_back(bench::SpelledTakes(takes, {}, options.threads),
+                             classes_of(takes, labels));
+        frames += takes.poses.rows();
+        letters += spelled.back().first.string.size();
+    }
+    fmt::print("{} frames, {} letters, letters shared by {}\n", frames, letters,
+               by_subject ? "subject" : "all");
+    fmt::print("spread          tau purity  cover. control  bundles height  seconds\n");
+    std::vector<std::string> spreads = {"depth:1",      "depth:2",        "depth:3",
+                                        "closure-near", "closure-length", "closure"};
+    if (!options.spread.empty()) spreads = {options.spread};
+    for (const std::string& spread : spreads) {
+        MotionBundleOptions bundles;
+        parse_spread(spread, bundles);
+        double seconds = 0;
+        int64_t count = 0;
+        double pure = 0, covered = 0, labelled = 0, height = 0, shuffled = 0;
+        for (const auto& [takes, classes] : spelled) {
+            const Found found = find(takes, bundles, options.threads);
+            seconds += found.seconds;
+            const BundleScore one = score(takes.string, found.bundles, classes);
+            double frames_here = 0;
+            for (const FrameClasses& of_take : classes) frames_here += double(of_take.size());
+            labelled += frames_here;
+            covered += one.coverage * frames_here;
+            pure += one.purity * one.coverage * frames_here;
+            shuffled += one.shuffled * one.coverage * frames_here;
+            count += one.bundles;
+            height += one.mean_height * double(one.bundles);
+        }
+        fmt::print("{:<14} {:>4.2f} {:>6.3f} {:>6.2f} {:>6.2f} {:>9} {:>6.2f} {:>8.3f}\n", spread,
+                   1.0, pure / covered, covered / labelled, shuffled / covered, count,
+                   height / double(count), seconds);
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        CLI::App app("purity, coverage and speed of motion bundles");
+        Options options;
+        std::string only = "takes";
+        app.add_option("--only", only);
+        app.add_option("corpus", options.corpus)->required();
+        app.add_option("truth", options.truth)->required();
+        app.add_option("--starts", options.starts);
+        app.add_option("--threads", options.threads);
+        app.add_option("--spread", options.spread);
+        app.add_flag("--curve", options.curve);
+        CLI11_PARSE(app, argc, argv);
+        if (only == "takes") judge_labelled_takes(options);
+        if (only == "subjects") judge_corpus(options, true);
+        if (only == "corpus") judge_corpus(options, false);
+        return 0;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bundles_bench: {}\n", error.what());
+        return 1;
+    }
+}
