@@ -161,8 +161,10 @@ bool is_before(const IndexedMatch& a, const IndexedMatch& b) {
            std::tuple(b.match.distance, b.clip, b.match.frames.first, b.match.frames.end);
 }
 
-/// The first k, those at the place of an earlier one left out.
-std::vector<IndexedMatch> nearest(std::vector<IndexedMatch> matches, int64_t k, double overlap) {
+}  // namespace
+
+std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int64_t k,
+                                          double overlap) {
     std::ranges::sort(matches, is_before);
     std::vector<IndexedMatch> kept;
     for (const IndexedMatch& match : matches) {
@@ -175,8 +177,6 @@ std::vector<IndexedMatch> nearest(std::vector<IndexedMatch> matches, int64_t k, 
     }
     return kept;
 }
-
-}  // namespace
 
 MatrixF leaf_positions(const MatrixDView& means) {
     constexpr double mm_per_cm = 10;
@@ -209,7 +209,7 @@ std::vector<IndexedMatch> SignatureIndex::search(std::span<const SignatureRun> q
     if (query.empty()) return {};
     auto matches =
         options.match.tolerance > 0 ? near_matches(query, options) : exact_matches(query);
-    return nearest(std::move(matches), k, options.match.overlap);
+    return nearest_matches(std::move(matches), k, options.match.overlap);
 }
 
 std::vector<IndexedMatch> SignatureIndex::near_matches(

@@ -52,6 +52,11 @@ struct IndexedMatch {
     bool operator==(const IndexedMatch&) const = default;
 };
 
+/// The k nearest, nearest first, then by clip and frame; those at the place of a nearer one left out
+/// (is_same_place).
+std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int64_t k,
+                                          double overlap);
+
 /// Where leaves lie: rows whose Euclidean distances are those between the mean poses of leaves (C ×
 /// f, cm, the origin among the f / 3 markers), mm per marker.
 MatrixF leaf_positions(const MatrixDView& means);

@@ -1,0 +1,52 @@
+#include "kinetome/models/match_rerank.h"
+
+#include <algorithm>
+
+#include "kinetome/base/parallel.h"
+#include "kinetome/math/warp.h"
+
+namespace kinetome {
+namespace {
+
+MatrixF every(const MatrixFView& rows, int64_t stride) {
+    MatrixF kept((rows.rows() + stride - 1) / stride, rows.cols());
+    for (Eigen::Index i = 0; i < kept.rows(); ++i) kept.row(i) = rows.row(i * stride);
+    return kept;
+}
+
+/// Where around a match the query fits best; nothing where it does not fit at all.
+std::vector<IndexedMatch> moved(const MatrixF& query, int64_t query_frames,
+                                const IndexedMatch& match, int64_t clip_frames,
+                                const ReadFeatures& read, const RerankOptions& options) {
+    const auto margin = static_cast<int64_t>(options.margin * double(query_frames));
+    const RowRange frames{std::max<int64_t>(match.match.frames.first - margin, 0),
+                          std::min(match.match.frames.end + margin, clip_frames)};
+    const auto paths = warp_matches(query, every(read(match.clip, frames), options.stride), {});
+    const auto nearest = std::ranges::min_element(paths, {}, &WarpPath::mean);
+    if (nearest == paths.end()) return {};
+    const int64_t first = frames.first + nearest->cells.front().second * options.stride;
+    const int64_t end = frames.first + (nearest->cells.back().second + 1) * options.stride;
+    return {{match.clip, {{first, std::min(end, clip_frames)}, nearest->mean}}};
+}
+
+}  // namespace
+
+std::vector<IndexedMatch> rerank_matches(const MatrixFView& query,
+                                         const std::vector<IndexedMatch>& matches,
+                                         const std::vector<int64_t>& clip_frames, int64_t k,
+                                         const ReadFeatures& read, const RerankOptions& options,
+                                         int threads) {
+    const MatrixF sampled = every(query, options.stride);
+    std::vector<std::vector<IndexedMatch>> found(matches.size());
+    parallel_for(threads, static_cast<int64_t>(matches.size()), [&](int64_t i) {
+        const IndexedMatch& match = matches[static_cast<size_t>(i)];
+        found[static_cast<size_t>(i)] =
+            moved(sampled, query.rows(), match, clip_frames[static_cast<size_t>(match.clip)], read,
+                  options);
+    });
+    std::vector<IndexedMatch> all;
+    for (const auto& one : found) all.insert(all.end(), one.begin(), one.end());
+    return nearest_matches(std::move(all), k, options.overlap);
+}
+
+}  // namespace kinetome
