@@ -52,8 +52,8 @@ struct IndexedMatch {
     bool operator==(const IndexedMatch&) const = default;
 };
 
-/// The k nearest, nearest first, then by clip and frame; those at the place of a nearer one left out
-/// (is_same_place).
+/// The k nearest, nearest first, then by clip and frame; those at the place of a nearer one left
+/// out (is_same_place).
 std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int64_t k,
                                           double overlap);
 

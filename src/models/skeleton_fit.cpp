@@ -1,0 +1,108 @@
+#include "kinetome/models/skeleton_fit.h"
+
+#include <Eigen/Cholesky>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace kinetome {
+
+SkeletonFit::SkeletonFit(std::shared_ptr<const Skeleton> skeleton,
+                         const SkeletonFitOptions& options)
+    : skeleton_(std::move(skeleton)),
+      options_(options),
+      chain_(*skeleton_),
+      targets_(3 * skeleton_->joint_count()),
+      rest_(skeleton_->dof_count()),
+      weights_(skeleton_->dof_count()) {
+    Eigen::Index dof = 0;
+    for (const Joint& joint : skeleton_->joints()) {
+        for (const Channel channel : joint.channels) {
+            weights_[dof++] = is_rotation(channel) ? options_.rest : 0;
+        }
+    }
+    slopes_.resize(targets_.size() + rest_.size(), rest_.size());
+    moved_.resize(slopes_.rows());
+}
+
+void SkeletonFit::residuals(std::span<const float> dofs, VectorD& result) {
+    chain_.evaluate(dofs, pose_);
+    result.resize(slopes_.rows());
+    for (size_t joint = 0; joint < pose_.positions.size(); ++joint) {
+        result.segment<3>(static_cast<Eigen::Index>(3 * joint)) = pose_.positions[joint];
+    }
+    result.head(targets_.size()) -= targets_;
+    for (Eigen::Index dof = 0; dof < rest_.size(); ++dof) {
+        result[targets_.size() + dof] =
+            weights_[dof] * (double(dofs[static_cast<size_t>(dof)]) - rest_[dof]);
+    }
+}
+
+void SkeletonFit::differentiate(std::span<float> dofs, const VectorD& at) {
+    constexpr float nudge = 1.0F / 1024;
+    for (size_t dof = 0; dof < dofs.size(); ++dof) {
+        const float kept = dofs[dof];
+        dofs[dof] = kept + nudge;
+        const double step = double(dofs[dof]) - double(kept);  // as floats have it
+        residuals(dofs, moved_);
+        slopes_.col(static_cast<Eigen::Index>(dof)) = (moved_ - at) / step;
+        dofs[dof] = kept;
+    }
+}
+
+void SkeletonFit::fit(std::span<const float> positions, std::span<const float> rest,
+                      std::span<float> dofs) {
+    if (static_cast<Eigen::Index>(positions.size()) != targets_.size() ||
+        static_cast<Eigen::Index>(rest.size()) != rest_.size() || rest.size() != dofs.size()) {
+        throw std::invalid_argument("a skeleton is fitted to positions of its own joints");
+    }
+    for (size_t i = 0; i < positions.size(); ++i) {
+        targets_[static_cast<Eigen::Index>(i)] = double(positions[i]);
+    }
+    for (size_t i = 0; i < rest.size(); ++i) {
+        rest_[static_cast<Eigen::Index>(i)] = double(rest[i]);
+    }
+    VectorD here;
+    residuals(dofs, here);
+    double damping = 1e-6;
+    std::vector<float> next(dofs.size());
+    for (int i = 0; i < options_.iterations; ++i) {
+        differentiate(dofs, here);
+        MatrixD normal = slopes_.transpose() * slopes_;
+        normal.diagonal() += damping * (normal.diagonal().array() + 1).matrix();
+        const VectorD step = normal.ldlt().solve(-slopes_.transpose() * here);
+        for (size_t dof = 0; dof < next.size(); ++dof) {
+            next[dof] = float(double(dofs[dof]) + step[static_cast<Eigen::Index>(dof)]);
+        }
+        VectorD there;
+        residuals(next, there);
+        if (!(there.squaredNorm() < here.squaredNorm())) {
+            if (step.cwiseAbs().maxCoeff() < options_.close) return;
+            damping = damping * 100 + 1e-6;
+            continue;
+        }
+        std::copy(next.begin(), next.end(), dofs.begin());
+        here = there;
+        damping /= 10;
+        if (step.cwiseAbs().maxCoeff() < options_.close) return;
+    }
+}
+
+MatrixF fit_frames(SkeletonFit& fit, const MatrixFView& positions, std::span<const float> start,
+                   std::span<const float> end, int64_t frames) {
+    MatrixF motion(positions.rows(), static_cast<Eigen::Index>(start.size()));
+    std::vector<float> dofs(start.begin(), start.end()), rest(start.size());
+    for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+        const float passed = float(i) / float(frames);
+        for (size_t dof = 0; dof < rest.size(); ++dof) {
+            rest[dof] = start[dof] + passed * (end[dof] - start[dof]);
+        }
+        const std::span<const float> row(positions.data() + i * positions.outerStride(),
+                                         static_cast<size_t>(positions.cols()));
+        fit.fit(row, rest, dofs);
+        std::copy(dofs.begin(), dofs.end(), motion.row(i).data());
+    }
+    return motion;
+}
+
+}  // namespace kinetome
