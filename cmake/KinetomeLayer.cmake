@@ -17,6 +17,20 @@ if(KINETOME_SANITIZE)
   target_link_options(kinetome_options INTERFACE -fsanitize=${KINETOME_SANITIZE})
 endif()
 
+# kinetome_precompile(TARGET FROM [HEADER ...]): TARGET uses what FROM precompiled; FROM itself names the headers. Both
+# must have the same compile options.
+function(kinetome_precompile target from)
+  if(target STREQUAL from)
+    target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${from})
+  endif()
+  # The first lets ccache see what was precompiled. The others: GCC forgets that a precompiled header is the system's,
+  # and finds overlaps and bounds in it where there are none (bug 105651 again).
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess
+    -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
+endfunction()
+
 # kinetome_layer(NAME [USES lower layers] [LINKS external targets])
 # makes the library kinetome_NAME of src/NAME with the headers in include/kinetome/NAME.
 # Headers of a layer are found only through its target, so the link order is the include order.
@@ -36,6 +50,9 @@ function(kinetome_layer name)
     add_library(${target} STATIC ${sources} ${headers})
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/${name})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:kinetome_options>)
+    if(KINETOME_PRECOMPILE STREQUAL "all")
+      kinetome_precompile(${target} kinetome_base)
+    endif()
   else()  # headers alone
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
