@@ -75,14 +75,19 @@ Command label_command() {
                                "with --truth alone: also from the first of these takes, the first "
                                "two, …, separated by commas")
                     ->delimiter(',');
-                app.add_option("--radius", flags->transfer.radius,
-                               "frames on a path are no farther apart, cm")
-                    ->capture_default_str();
                 app.add_option("--threshold", flags->transfer.threshold,
                                "mean distance along a path to a label, cm, at most")
+                    ->check(CLI::PositiveNumber)
                     ->capture_default_str();
                 app.add_option("--lead", flags->transfer.lead,
-                               "share of what any other label costs that a label may cost at most")
+                               "a label is given if it costs less than this share of any other")
+                    ->check(CLI::Range(0.01, 1.0))
+                    ->capture_default_str();
+                app.add_option("--recognised", flags->transfer.recognised,
+                               "where every movement has a label: learn both limits from the "
+                               "labelled primitives, so that this share of them would be "
+                               "recognised by other takes (1: do not)")
+                    ->check(CLI::Range(0.01, 1.0))
                     ->capture_default_str();
                 app.add_option("--format", flags->format, "csv or json")->capture_default_str();
                 app.add_option("-o,--output", flags->output,

@@ -72,7 +72,7 @@ std::vector<LabelTable> label_tables(const MatrixFView& features,
         for (size_t i = 0; i < known.size(); ++i) {
             if (primitives[i].clip == clip) known[i] = true_labels[i];
         }
-        const KnowledgeBase base(features, primitives, known, threads);
+        const KnowledgeBase base(features, primitives, known);
         std::vector<int32_t> given;
         for (const LabelGuess& guess : transfer_labels(base, features, asked, options, threads)) {
             given.push_back(guess.label);

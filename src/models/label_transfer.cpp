@@ -1,8 +1,8 @@
 #include "kinetome/models/label_transfer.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
+#include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "kinetome/base/parallel.h"
@@ -13,157 +13,166 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Frames of a query that are searched for together; most queries end after a few.
-constexpr int64_t frames_at_once = 8;
+/// More would make the limits hardly surer, and each is compared with all others.
+constexpr int64_t most_asked = 512;
 
-/// Columns that no path enters, before each run: as many as a step may pass over.
-constexpr int32_t gap = 2;
+void check(const LabelTransferOptions& options) {
+    const auto is_share = [](double value) { return value > 0 && value <= 1; };
+    if (!(options.threshold > 0 && is_share(options.lead) && is_share(options.recognised))) {
+        throw std::invalid_argument(
+            "labels take a threshold above 0, and a lead and a share of known primitives above 0 "
+            "and up to 1");
+    }
+}
 
-/// Step of a path: slope_limited_steps, weighted by the query's frames.
-struct Step {
-    size_t frames = 1;
-    int32_t columns = 1;
-};
-constexpr std::array<Step, 3> steps = {{{1, 1}, {1, 2}, {2, 1}}};
-
-/// Where a path over the whole query ends; the cheapest is the least.
-struct Arrival {
-    double total = infinite;
-    int32_t column = 0, source = -1;
-    auto operator<=>(const Arrival&) const = default;
-};
-
-/// The cheapest path to a frame of the query and a column.
-struct Cell {
-    double total = infinite;
-    int32_t begin = 0;  ///< column
-};
+/// The least value that at least the share of all values like these does not exceed, as far as so
+/// few can tell (the bound of split conformal prediction).
+std::optional<double> upper_quantile(std::vector<double> values, double share) {
+    const auto rank = std::llround(std::ceil(share * double(values.size() + 1)));
+    if (rank > static_cast<int64_t>(values.size())) return std::nullopt;
+    const auto at = values.begin() + rank - 1;
+    std::ranges::nth_element(values, at);
+    return *at;
+}
 
 }  // namespace
 
-/// Subsequence dynamic time warping over the cells of a neighbourhood graph alone.
+/// Runs in the order of what they cost at least, so that most need not be tried.
 class KnowledgeBase::Search {
   public:
-    explicit Search(int64_t columns) {
-        for (auto& row : rows_) row.resize(static_cast<size_t>(columns));
+    struct Found {
+        double cost = infinite;
+        int64_t run = -1;
+    };
+
+    Search(const KnowledgeBase& known, const MatrixFView& primitive)
+        : query_(known.search_->query(primitive)), order_(known.runs_.size()) {
+        std::iota(order_.begin(), order_.end(), int64_t{0});
+        std::ranges::stable_sort(order_, {}, [&](int64_t run) { return query_.bound(run); });
     }
 
-    /// Goes on by one frame of the query, with the columns near it and their distances.
-    void advance(std::span<const int32_t> columns, std::span<const float> distances) {
-        std::ranges::rotate(rows_, rows_.end() - 1);
-        std::ranges::rotate(touched_, touched_.end() - 1);
-        for (const int32_t column : touched_[0]) cell(0, column) = {};
-        touched_[0].assign(columns.begin(), columns.end());
-        for (size_t i = 0; i < columns.size(); ++i) {
-            const Cell best = cheapest(columns[i], double(distances[i]));
-            cell(0, columns[i]) = best;
-            if (best.total < infinite) latest_ = frames_ + 1;
+    /// The cheapest run among those that are asked for, the first of equal ones.
+    template <class Asked>
+    Found cheapest(double at_most, Asked&& asked) const {
+        Found best{at_most, -1};
+        for (const int64_t run : order_) {
+            if (query_.bound(run) > best.cost) break;
+            if (!asked(run)) continue;
+            const double cost = query_.cost(run, best.cost);
+            if (cost == infinite) continue;
+            if (cost < best.cost || best.run < 0 || run < best.run) best = {cost, run};
         }
-        ++frames_;
+        return best.run < 0 ? Found{} : best;
     }
-
-    /// Whether a path may still come to the query's end.
-    bool goes_on() const { return frames_ - latest_ < int64_t(rows_.size()) - 1; }
-
-    /// The columns that paths over all frames so far may end in.
-    std::span<const int32_t> ends() const { return touched_[0]; }
-    const Cell& end(int32_t column) const { return rows_[0][static_cast<size_t>(column)]; }
 
   private:
-    Cell& cell(size_t back, int32_t column) { return rows_[back][static_cast<size_t>(column)]; }
-
-    Cell cheapest(int32_t column, double distance) {
-        if (frames_ == 0) return {distance, column};
-        Cell best;
-        for (const Step& step : steps) {
-            const Cell& from = cell(step.frames, column - step.columns);
-            const double total = from.total + double(step.frames) * distance;
-            if (total < best.total) best = {total, from.begin};
-        }
-        return best;
-    }
-
-    std::array<std::vector<Cell>, 3> rows_;  ///< of the latest frame and the two before it
-    std::array<std::vector<int32_t>, 3> touched_;
-    int64_t frames_ = 0, latest_ = 0;  ///< of the query; of these, up to the last that a path meets
+    WarpQuery query_;
+    std::vector<int64_t> order_;
 };
 
 KnowledgeBase::KnowledgeBase(const MatrixFView& features,
                              std::span<const CorpusPrimitive> primitives,
-                             std::span<const int32_t> labels, int threads) {
+                             std::span<const int32_t> labels) {
     if (primitives.size() != labels.size()) {
         throw std::invalid_argument("each known primitive must have one label");
     }
     require_rows(features, primitives);
-    std::vector<int64_t> frames;
+    std::vector<RowRange> sequences;
     for (size_t p = 0; p < primitives.size(); ++p) {
         if (labels[p] < 0) continue;
         const bool goes_on =
             p > 0 && labels[p - 1] == labels[p] && adjoin(primitives[p - 1], primitives[p]);
-        if (!goes_on) columns_.resize(columns_.size() + gap);
-        const RowRange& rows = primitives[p].rows;
-        for (int64_t row = rows.first; row < rows.end; ++row) {
-            frames.push_back(row);
-            column_of_.push_back(static_cast<int32_t>(columns_.size()));
-            columns_.push_back(
-                {labels[p], static_cast<int32_t>(p), static_cast<int32_t>(rows.size())});
+        if (!goes_on) {
+            runs_.push_back({labels[p], primitives[p].clip, {}, {}});
+            sequences.push_back({primitives[p].rows.first, primitives[p].rows.first});
         }
+        sequences.back().end = primitives[p].rows.end;
+        runs_.back().sources.push_back(static_cast<int64_t>(p));
+        runs_.back().ends.push_back(sequences.back().size());
     }
-    if (!frames.empty()) index_.emplace(features(frames, Eigen::all), KnnEngine::blocks, threads);
+    if (!runs_.empty()) search_.emplace(features, sequences);
 }
 
-KnowledgeBase::Search KnowledgeBase::search_for(const MatrixFView& primitive, double radius) const {
-    Search search(static_cast<int64_t>(columns_.size()));
-    std::vector<int32_t> columns;
-    for (int64_t first = 0; first < primitive.rows() && search.goes_on(); first += frames_at_once) {
-        const int64_t count = std::min(frames_at_once, primitive.rows() - first);
-        const NeighbourLists near =
-            index_->search(primitive.middleRows(first, count), {radius, index_->rows()}, 1);
-        for (int64_t i = 0; i < count; ++i) {
-            columns.clear();
-            for (const int32_t row : near.rows_of(i)) columns.push_back(column_of_[size_t(row)]);
-            search.advance(columns, near.distances_of(i));
+std::vector<KnowledgeBase::Place> KnowledgeBase::places() const {
+    std::vector<Place> places;
+    for (size_t r = 0; r < runs_.size(); ++r) {
+        int64_t first = 0;
+        for (const int64_t end : runs_[r].ends) {
+            places.push_back({static_cast<int64_t>(r), {first, end}});
+            first = end;
         }
     }
-    return search;
+    return places;
 }
 
-LabelGuess KnowledgeBase::label_of(const MatrixFView& primitive,
-                                   const LabelTransferOptions& options) const {
-    if (!index_ || primitive.rows() == 0) return {};
-    const Search search = search_for(primitive, options.radius);
-    std::map<int32_t, Arrival> by_label;
-    for (const int32_t end : search.ends()) {
-        const Cell& cell = search.end(end);
-        if (cell.total == infinite) continue;
-        const Column& source = columns_[static_cast<size_t>((cell.begin + end) / 2)];
-        if (end - cell.begin + 1 < options.cover * source.frames) continue;
-        Arrival& cheapest = by_label[source.label];
-        cheapest = std::min(cheapest, {cell.total, end, source.source});
+KnowledgeBase::OwnLabel KnowledgeBase::own_label(const Place& place, double lead) const {
+    const Run& home = runs_[static_cast<size_t>(place.run)];
+    const auto elsewhere = [&](int64_t run) { return runs_[size_t(run)].clip != home.clip; };
+    const auto alike = [&](int64_t run) { return runs_[size_t(run)].label == home.label; };
+    const Search search(
+        *this, search_->rows_of(place.run).middleRows(place.rows.first, place.rows.size()));
+    const auto same =
+        search.cheapest(infinite, [&](int64_t run) { return elsewhere(run) && alike(run); });
+    if (same.run < 0) return {};
+    const auto next = search.cheapest(same.cost / lead,
+                                      [&](int64_t run) { return elsewhere(run) && !alike(run); });
+    if (next.run < 0) return {same.cost, 0};
+    return {same.cost, next.cost > 0 ? same.cost / next.cost : 1};
+}
+
+LabelLimits KnowledgeBase::limits(const LabelTransferOptions& options, int threads) const {
+    check(options);
+    if (options.recognised == 1) return {options.threshold, options.lead};
+    const std::vector<Place> known = places();
+    const auto count = static_cast<int64_t>(known.size());
+    const int64_t asked = std::min(count, most_asked);
+    std::vector<OwnLabel> own(static_cast<size_t>(asked));
+    parallel_for(threads, asked, [&](int64_t i) {
+        own[size_t(i)] = own_label(known[static_cast<size_t>(i * count / asked)], options.lead);
+    });
+    std::vector<double> costs, shares;
+    for (const OwnLabel& one : own) {
+        if (one.cost == infinite) continue;
+        costs.push_back(one.cost);
+        shares.push_back(one.share_of_next);
     }
-    const auto frames = double(primitive.rows());
-    LabelGuess guess;
-    for (const auto& [label, arrival] : by_label) {
-        const double cost = arrival.total / frames;
-        guess.rival = std::min(guess.rival, std::max(cost, guess.cost));
-        if (!(cost < guess.cost)) continue;
-        guess.cost = cost;
-        guess.label = label;
-        guess.source = arrival.source;
+    const auto cost = upper_quantile(std::move(costs), options.recognised);
+    const auto share = upper_quantile(std::move(shares), options.recognised);
+    return {std::min(options.threshold, cost.value_or(infinite)),
+            std::clamp(share.value_or(0), options.lead, 1.0)};
+}
+
+LabelGuess KnowledgeBase::label_of(const MatrixFView& primitive, const LabelLimits& limits) const {
+    if (!search_ || primitive.rows() == 0) return {};
+    const Search search(*this, primitive);
+    const auto nearest = search.cheapest(limits.threshold, [](int64_t) { return true; });
+    if (nearest.run < 0) return {};
+    const int32_t label = runs_[static_cast<size_t>(nearest.run)].label;
+    const auto rival = search.cheapest(nearest.cost / limits.lead, [&](int64_t run) {
+        return runs_[static_cast<size_t>(run)].label != label;
+    });
+    return {rival.run < 0 ? label : -1, nearest.cost, rival.cost,
+            source_of(primitive, nearest.run, nearest.cost)};
+}
+
+int64_t KnowledgeBase::source_of(const MatrixFView& primitive, int64_t run, double cost) const {
+    const Run& home = runs_[static_cast<size_t>(run)];
+    for (const WarpPath& path : warp_matches(primitive, search_->rows_of(run), {cost})) {
+        const int64_t middle = (path.cells.front().second + path.cells.back().second) / 2;
+        const auto end = std::ranges::upper_bound(home.ends, middle);
+        return home.sources[static_cast<size_t>(end - home.ends.begin())];
     }
-    // Strictly: where two labels cost nothing, neither leads.
-    const bool leads = guess.cost < options.lead * guess.rival;
-    if (!(guess.cost <= options.threshold && leads)) guess.label = -1;
-    return guess;
+    return -1;
 }
 
 std::vector<LabelGuess> transfer_labels(const KnowledgeBase& known, const MatrixFView& features,
                                         std::span<const CorpusPrimitive> primitives,
                                         const LabelTransferOptions& options, int threads) {
     require_rows(features, primitives);
+    const LabelLimits limits = known.limits(options, threads);
     std::vector<LabelGuess> guesses(primitives.size());
     parallel_for(threads, static_cast<int64_t>(primitives.size()), [&](int64_t i) {
-        guesses[size_t(i)] = known.label_of(rows_of(features, primitives[size_t(i)]), options);
+        guesses[size_t(i)] = known.label_of(rows_of(features, primitives[size_t(i)]), limits);
     });
     return guesses;
 }

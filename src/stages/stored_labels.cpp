@@ -8,6 +8,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/models/movement_rows.h"
 #include "kinetome/stages/graph_features.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/store/feature_store.h"
@@ -81,7 +82,7 @@ std::vector<int32_t> labels_from_others(const PrimitiveFeatures& features, int64
         asked.push_back(features.primitives[p]);
         places.push_back(p);
     }
-    const KnowledgeBase base(features.features, features.primitives, known, threads);
+    const KnowledgeBase base(features.features, features.primitives, known);
     const auto guesses = transfer_labels(base, features.features, asked, options, threads);
     std::vector<int32_t> given(known.size(), -1);
     for (size_t i = 0; i < places.size(); ++i) given[places[i]] = guesses[i].label;
@@ -100,13 +101,17 @@ PrimitiveFeatures read_primitive_features(const Generation& generation) {
     for (const PrimitiveClip& clip : clips) frames += clip.clip.frames;
     PrimitiveFeatures result;
     for (size_t c = 0; c < clips.size(); ++c) {
-        const MatrixF rows = graph_features(shards.read(clips[c].clip.name), options);
+        std::vector<CorpusPrimitive> primitives;
+        for (const StoredPrimitive& stored : clips[c].primitives) {
+            primitives.push_back({static_cast<int64_t>(c), stored.primitive.frames});
+        }
+        const MatrixF rows =
+            movement_rows(graph_features(shards.read(clips[c].clip.name), options), primitives);
         if (result.features.rows() == 0) result.features.resize(frames, rows.cols());
         result.features.middleRows(row, rows.rows()) = rows;
-        for (const StoredPrimitive& stored : clips[c].primitives) {
-            const RowRange& range = stored.primitive.frames;
-            result.primitives.push_back(
-                {static_cast<int64_t>(c), {row + range.first, row + range.end}});
+        for (const CorpusPrimitive& primitive : primitives) {
+            const RowRange& range = primitive.rows;
+            result.primitives.push_back({primitive.clip, {row + range.first, row + range.end}});
         }
         row += rows.rows();
     }
@@ -140,7 +145,7 @@ TransferredLabels transfer_labels(const PrimitiveFeatures& features,
     for (size_t p = 0; p < known.size(); ++p) {
         if (known[p] < 0) asked.push_back(features.primitives[p]);
     }
-    const KnowledgeBase base(features.features, features.primitives, known, threads);
+    const KnowledgeBase base(features.features, features.primitives, known);
     const auto found = transfer_labels(base, features.features, asked, options, threads);
 
     TransferredLabels result;

@@ -10,6 +10,7 @@
 #include "kinetome/base/random.h"
 #include "kinetome/math/warp.h"
 #include "kinetome/models/label_table.h"
+#include "kinetome/models/movement_rows.h"
 
 using namespace kinetome;
 
@@ -57,82 +58,149 @@ Cycles cycles(int64_t clips, int64_t cycles_each, int32_t kinds) {
     return all;
 }
 
+constexpr LabelLimits usual{108, 0.85};
+
 LabelGuess guess_one(const MatrixF& known, const std::vector<CorpusPrimitive>& primitives,
                      const std::vector<int32_t>& labels, const MatrixF& asked,
-                     const LabelTransferOptions& options = {}) {
-    return KnowledgeBase(known, primitives, labels, 1).label_of(asked, options);
+                     const LabelLimits& limits = usual) {
+    return KnowledgeBase(known, primitives, labels).label_of(asked, limits);
 }
 
-}  // namespace
-
-TEST_CASE("a label costs what the cheapest match in its runs does") {
-    const GeneratedPrimitives all = generated_primitives(20);
-    const std::vector<int32_t> labels = numbers_of(all.labels);
-    const auto is_known = [&](size_t p) { return all.primitives[p].clip % 2 == 0; };
-    std::vector<int32_t> known(labels.size(), -1);
-    std::vector<RowRange> runs;
-    std::vector<int32_t> run_labels;
-    for (size_t p = 0; p < labels.size(); ++p) {
-        if (!is_known(p)) continue;
-        known[p] = labels[p];
-        const RowRange& rows = all.primitives[p].rows;
-        if (p > 0 && known[p - 1] == known[p] && adjoin(all.primitives[p - 1], all.primitives[p])) {
-            runs.back().end = rows.end;
-        } else {
-            runs.push_back(rows);
-            run_labels.push_back(known[p]);
-        }
-    }
-    const KnowledgeBase base(all.features, all.primitives, known, 1);
-    int64_t found = 0, rivals = 0;
-    for (size_t p = 0; p < labels.size(); ++p) {
-        if (is_known(p)) continue;
-        const RowRange& rows = all.primitives[p].rows;
-        const auto query = all.features.middleRows(rows.first, rows.size());
-        std::map<int32_t, double> costs;
-        for (size_t r = 0; r < runs.size(); ++r) {
-            const auto run = all.features.middleRows(runs[r].first, runs[r].size());
-            for (const WarpPath& path :
-                 warp_matches(query, run, {infinite, slope_limited_steps(), 96})) {
-                double& cost = costs.emplace(run_labels[r], infinite).first->second;
-                cost = std::min(cost, path.mean);
-            }
-        }
-        std::vector<double> ordered{infinite, infinite};
-        for (const auto& [label, cost] : costs) ordered.push_back(cost);
-        std::ranges::sort(ordered);
-        const LabelGuess guess = base.label_of(query, {96, 72, 0, 0.8});
-        CHECK(guess.cost == Approx(ordered[0]).epsilon(1e-5));
-        CHECK(guess.rival == Approx(ordered[1]).epsilon(1e-5));
-        const bool leads = guess.cost <= 72 && guess.cost < 0.8 * guess.rival;
-        CHECK((guess.label >= 0) == leads);
-        if (leads) CHECK(costs.at(guess.label) == Approx(guess.cost).epsilon(1e-5));
-        if (guess.source >= 0 && leads) CHECK(known[size_t(guess.source)] == guess.label);
-        found += leads;
-        rivals += ordered[1] < infinite;
-    }
-    CHECK(found > 10);
-    CHECK(rivals > 10);
-}
-
-TEST_CASE("labels of generated motion are almost never wrong and mostly found") {
-    const GeneratedPrimitives all = generated_primitives(80);
-    const std::vector<int32_t> labels = numbers_of(all.labels);
-    std::vector<int32_t> known(labels.size(), -1), truth, given;
-    std::vector<CorpusPrimitive> asked;
-    for (size_t p = 0; p < labels.size(); ++p) {
-        if (all.primitives[p].clip % 2 == 0) {
-            known[p] = labels[p];
-        } else {
+/// Generated takes of which every other one is known.
+struct HalfKnown {
+    explicit HalfKnown(int64_t takes) : all(generated_primitives(takes)) {
+        all.features = movement_rows(all.features, all.primitives);
+        const std::vector<int32_t> labels = numbers_of(all.labels);
+        for (size_t p = 0; p < labels.size(); ++p) {
+            const bool is_known = all.primitives[p].clip % 2 == 0;
+            known.push_back(is_known ? labels[p] : -1);
+            if (is_known) continue;
             asked.push_back(all.primitives[p]);
             truth.push_back(labels[p]);
         }
     }
-    const KnowledgeBase base(all.features, all.primitives, known, 2);
-    const auto guesses = transfer_labels(base, all.features, asked, {}, 1);
-    CHECK(guesses == transfer_labels(base, all.features, asked, {}, 3));
+    MatrixFView rows(const CorpusPrimitive& primitive) const {
+        return all.features.middleRows(primitive.rows.first, primitive.rows.size());
+    }
+
+    GeneratedPrimitives all;
+    std::vector<int32_t> known, truth;
+    std::vector<CorpusPrimitive> asked;
+};
+
+/// What each label costs, by comparison with every run of known primitives.
+std::map<int32_t, double> costs_of_labels(const HalfKnown& half, const MatrixFView& query,
+                                          int64_t left_out_clip = -1) {
+    const auto& primitives = half.all.primitives;
+    std::map<int32_t, double> costs;
+    for (size_t first = 0; first < primitives.size();) {
+        size_t end = first + 1;
+        while (end < primitives.size() && half.known[end] == half.known[first] &&
+               adjoin(primitives[end - 1], primitives[end])) {
+            ++end;
+        }
+        const RowRange run{primitives[first].rows.first, primitives[end - 1].rows.end};
+        if (half.known[first] >= 0 && primitives[first].clip != left_out_clip) {
+            double& cost = costs.emplace(half.known[first], infinite).first->second;
+            for (const WarpPath& path :
+                 warp_matches(query, half.all.features.middleRows(run.first, run.size()), {})) {
+                cost = std::min(cost, path.mean);
+            }
+        }
+        first = end;
+    }
+    return costs;
+}
+
+}  // namespace
+
+TEST_CASE("a label is given exactly where comparing with every known run would give it") {
+    const HalfKnown half(24);
+    const KnowledgeBase base(half.all.features, half.all.primitives, half.known);
+    int64_t given = 0, rivalled = 0, far = 0;
+    for (const CorpusPrimitive& primitive : half.asked) {
+        const auto query = half.rows(primitive);
+        double nearest = infinite, next = infinite;
+        int32_t label = -1;
+        for (const auto& [other, cost] : costs_of_labels(half, query)) {
+            next = std::min(next, std::max(cost, nearest));
+            if (cost < nearest) label = other;
+            nearest = std::min(nearest, cost);
+        }
+        const LabelGuess guess = base.label_of(query, {80, 0.5});
+        if (nearest > 80) {
+            CHECK(guess == LabelGuess{});
+            ++far;
+            continue;
+        }
+        CHECK(guess.cost == nearest);
+        const bool leads = next > nearest / 0.5;
+        CHECK(guess.rival == (leads ? infinite : next));
+        CHECK(guess.label == (leads ? label : -1));
+        REQUIRE(guess.source >= 0);
+        CHECK(half.known[size_t(guess.source)] == label);
+        ++(leads ? given : rivalled);
+    }
+    CAPTURE(given, rivalled, far);
+    CHECK(given > 10);
+    CHECK(rivalled > 0);
+    CHECK(far > 0);
+}
+
+TEST_CASE("limits are learned of what known primitives cost by other takes") {
+    const HalfKnown half(24);
+    const KnowledgeBase base(half.all.features, half.all.primitives, half.known);
+    std::vector<double> costs, shares;
+    for (size_t p = 0; p < half.known.size(); ++p) {
+        if (half.known[p] < 0) continue;
+        const CorpusPrimitive& primitive = half.all.primitives[p];
+        auto others = costs_of_labels(half, half.rows(primitive), primitive.clip);
+        const auto own = others.find(half.known[p]);
+        if (own == others.end() || own->second == infinite) continue;
+        const double cost = own->second;
+        others.erase(own);
+        double next = infinite;
+        for (const auto& [label, other] : others) next = std::min(next, other);
+        costs.push_back(cost);
+        shares.push_back(cost / next);
+    }
+    std::ranges::sort(costs);
+    std::ranges::sort(shares);
+    const LabelTransferOptions options{1000, 0.01, 0.8};
+    const auto rank = size_t(std::ceil(0.8 * double(costs.size() + 1))) - 1;
+    REQUIRE(rank < costs.size());
+    const LabelLimits limits = base.limits(options, 1);
+    CHECK(limits.threshold == costs[rank]);
+    CHECK(limits.lead == std::min(1.0, shares[rank]));
+    const LabelLimits again = base.limits(options, 3);
+    CHECK(again.threshold == limits.threshold);
+    CHECK(again.lead == limits.lead);
+
+    const LabelLimits bounded = base.limits({costs[rank] / 2, 0.99, 0.8}, 1);
+    CHECK(bounded.threshold == costs[rank] / 2);
+    CHECK(bounded.lead >= 0.99);
+    const LabelLimits given = base.limits({90, 0.7, 1}, 1);
+    CHECK(given.threshold == 90);
+    CHECK(given.lead == 0.7);
+}
+
+TEST_CASE("too few known primitives teach no limits") {
+    const MatrixF rows = MatrixF::Zero(40, 3);
+    const std::vector<CorpusPrimitive> two{{0, {0, 20}}, {1, {20, 40}}};
+    const std::vector<int32_t> labels{0, 0};
+    const LabelLimits limits = KnowledgeBase(rows, two, labels).limits({90, 0.7, 0.95}, 1);
+    CHECK(limits.threshold == 90);
+    CHECK(limits.lead == 0.7);
+}
+
+TEST_CASE("labels of generated motion are almost never wrong and mostly found") {
+    const HalfKnown half(80);
+    const KnowledgeBase base(half.all.features, half.all.primitives, half.known);
+    const auto guesses = transfer_labels(base, half.all.features, half.asked, {}, 1);
+    CHECK(guesses == transfer_labels(base, half.all.features, half.asked, {}, 3));
+    std::vector<int32_t> given;
     for (const LabelGuess& guess : guesses) given.push_back(guess.label);
-    const LabelCounts counts = label_table(truth, given, 12).all;
+    const LabelCounts counts = label_table(half.truth, given, 12).all;
     CAPTURE(counts.found, counts.correct, counts.missed);
     CHECK(counts.precision() >= 0.99);
     CHECK(counts.recall() >= 0.8);
@@ -149,14 +217,14 @@ TEST_CASE("a movement is known from wherever in its cycle it begins") {
         asked.push_back(all.primitives[p]);
         truth.push_back(all.labels[p]);
     }
-    const KnowledgeBase base(all.features, all.primitives, known, 1);
+    const KnowledgeBase base(all.features, all.primitives, known);
     for (const LabelGuess& guess : transfer_labels(base, all.features, asked, {}, 1)) {
         given.push_back(guess.label);
     }
     CHECK(given == truth);
 }
 
-TEST_CASE("no label is given where none is near, two are as near, or little of one is met") {
+TEST_CASE("no label is given where none is near or two are as near") {
     MatrixF line(40, 2);
     for (int64_t i = 0; i < 40; ++i) line.row(i) << float(10 * i), 0;
     const std::vector<CorpusPrimitive> halves{{0, {0, 20}}, {1, {20, 40}}};
@@ -175,10 +243,6 @@ TEST_CASE("no label is given where none is near, two are as near, or little of o
     CHECK(tie.cost == 0);
     CHECK(tie.rival == 0);
     CHECK(guess_one(line, twice, {7, 7}, first).label == 7);
-
-    const std::vector<CorpusPrimitive> whole{{0, {0, 40}}};
-    CHECK(guess_one(line, whole, {7}, first).label == -1);
-    CHECK(guess_one(line, whole, {7}, first, {96, 72, 0.5, 0.8}).label == 7);
 }
 
 TEST_CASE("what is equal everywhere, of one frame or not there at all misleads nobody") {
@@ -190,7 +254,7 @@ TEST_CASE("what is equal everywhere, of one frame or not there at all misleads n
     CHECK(guess_one(still, three, {-1, -1, -1}, still.topRows(5)) == LabelGuess{});
     CHECK(guess_one(still, {}, {}, still.topRows(5)) == LabelGuess{});
     CHECK(guess_one(still, three, {1, 1, 1}, still.topRows(0)) == LabelGuess{});
-    const KnowledgeBase base(still, three, std::vector<int32_t>{1, 1, 1}, 1);
+    const KnowledgeBase base(still, three, std::vector<int32_t>{1, 1, 1});
     CHECK(transfer_labels(base, still, {}, {}, 2).empty());
 }
 
@@ -198,11 +262,14 @@ TEST_CASE("knowledge that does not fit together is refused") {
     MatrixF rows = MatrixF::Zero(20, 3);
     const std::vector<CorpusPrimitive> one{{0, {5, 15}}};
     const std::vector<int32_t> label{0};
-    CHECK_THROWS_AS(KnowledgeBase(rows, one, std::vector<int32_t>{0, 1}, 1), std::invalid_argument);
-    CHECK_THROWS_AS(KnowledgeBase(rows.topRows(10), one, label, 1), std::invalid_argument);
-    const KnowledgeBase base(rows, one, label, 1);
-    CHECK_THROWS_AS(base.label_of(MatrixF::Zero(9, 4), {}), std::invalid_argument);
+    CHECK_THROWS_AS(KnowledgeBase(rows, one, std::vector<int32_t>{0, 1}), std::invalid_argument);
+    CHECK_THROWS_AS(KnowledgeBase(rows.topRows(10), one, label), std::invalid_argument);
+    const KnowledgeBase base(rows, one, label);
+    CHECK_THROWS_AS(base.label_of(MatrixF::Zero(9, 4), usual), std::invalid_argument);
+    CHECK_THROWS_AS(base.limits({0, 0.8, 1}, 1), std::invalid_argument);
+    CHECK_THROWS_AS(base.limits({100, 1.1, 1}, 1), std::invalid_argument);
+    CHECK_THROWS_AS(base.limits({100, 0.8, 0}, 1), std::invalid_argument);
     rows(7, 1) = std::nanf("");
-    CHECK_THROWS_AS(KnowledgeBase(rows, one, label, 1), std::invalid_argument);
+    CHECK_THROWS_AS(KnowledgeBase(rows, one, label), std::invalid_argument);
     CHECK_THROWS_AS(transfer_labels(base, rows, one, {}, 1), std::invalid_argument);
 }

@@ -8,27 +8,34 @@
 #include <vector>
 
 #include "kinetome/base/matrix.h"
-#include "kinetome/math/knn.h"
+#include "kinetome/math/warp_search.h"
 #include "kinetome/models/corpus_primitive.h"
 
 namespace kinetome {
 
-/// Distances are those of the features (cm). They are wider than inside a take, where a primitive
-/// has others of its performer beside it; the last two see to it that no label is guessed.
+/// Distances are those of the features (cm).
 struct LabelTransferOptions {
-    double radius = 96;     ///< no path leads through frames farther apart: it lies in the
-                            ///< neighbourhood graph of the two primitives
-    double threshold = 72;  ///< mean cost of the path to a label, at most
-    double cover = 0.75;    ///< of a known primitive's length that a path to it takes, at least:
-                            ///< all movements pass through a few common poses
-    double lead = 0.8;      ///< the cost is below this share of what any other label costs
+    double threshold = 108;  ///< mean cost of the path to a label, at most: another performer may
+                             ///< be half as far away again as poses of one may (r = 72)
+    double lead = 0.85;      ///< what costs less than this share of any other label leads enough
+    double recognised = 1;   ///< below 1: of the known primitives, those that LabelLimits let
+                             ///< through; only where no movement occurs that none is of, since
+                             ///< these then hardly keep out any
+};
+
+/// What a label may cost to be given.
+struct LabelLimits {
+    double threshold = 0;  ///< at most
+    double lead = 1;       ///< and no other label this share of it or less: cost / lead
 };
 
 /// What is known of a primitive's label, and why.
 struct LabelGuess {
     int32_t label = -1;  ///< -1: none is near enough, or two are nearly as near
-    double cost = std::numeric_limits<double>::infinity();   ///< of the nearest label, given or not
-    double rival = std::numeric_limits<double>::infinity();  ///< of the next one
+    double cost = std::numeric_limits<double>::infinity();   ///< of the nearest label within the
+                                                             ///< threshold, given or not
+    double rival = std::numeric_limits<double>::infinity();  ///< of the next one, if it is near
+                                                             ///< enough to stand against the label
     int64_t source = -1;  ///< the known primitive in which the middle of the nearest label's path
                           ///< lies, by its place in the list; -1 without a path
     bool operator==(const LabelGuess&) const = default;
@@ -38,35 +45,54 @@ struct LabelGuess {
 ///
 /// A primitive is looked for, by subsequence dynamic time warping (slope_limited_steps,
 /// WarpWeight::first), in runs of known primitives of one label that adjoin each other, so that it
-/// may begin at another moment of the movement than they do. Of the paths to one frame the cheapest
-/// counts. A label costs what its cheapest path does; of equal ones the earlier primitive is named.
+/// may begin at another moment of the movement than they do. A label costs what its cheapest path
+/// does; of equal ones the earlier primitive is named. All is found as if every path were tried.
 class KnowledgeBase {
   public:
     /// `labels` has one for each primitive of `features` (n × d); those below 0 are left out.
     /// Throws std::invalid_argument when the lists disagree, for a primitive that is empty or lies
     /// outside the features, and for a value in one that is not finite.
     KnowledgeBase(const MatrixFView& features, std::span<const CorpusPrimitive> primitives,
-                  std::span<const int32_t> labels, int threads);
+                  std::span<const int32_t> labels);
 
-    /// The label of a primitive of m × d features. Throws what KnnIndex::search throws.
-    LabelGuess label_of(const MatrixFView& primitive, const LabelTransferOptions& options) const;
+    /// Those of the options, or what the known primitives teach: the least threshold and lead that
+    /// would each let the share `recognised` of them have their own label from other clips, were it
+    /// not known; no higher threshold than the options' and no lower lead. Too few teach nothing
+    /// (below 19 at a share of 0.95); of many 512, evenly spaced, are asked. Throws
+    /// std::invalid_argument for options that are not positive, or a lead or share above 1.
+    LabelLimits limits(const LabelTransferOptions& options, int threads) const;
+
+    /// The label of a primitive of m × d features. Throws what WarpSearch::query throws.
+    LabelGuess label_of(const MatrixFView& primitive, const LabelLimits& limits) const;
 
   private:
-    struct Column {
-        int32_t label = -1;  ///< -1: between two runs
-        int32_t source = -1;
-        int32_t frames = 0;  ///< of the source
+    struct Run {
+        int32_t label = -1;
+        int64_t clip = 0;
+        std::vector<int64_t> sources;  ///< primitives, by their place in the list
+        std::vector<int64_t> ends;     ///< of each, by row of the run
+    };
+    struct Place {
+        int64_t run = 0;
+        RowRange rows;  ///< of the run
+    };
+    /// What a primitive would cost by other clips, were its label not known.
+    struct OwnLabel {
+        double cost = std::numeric_limits<double>::infinity();
+        double share_of_next = 0;  ///< of what the next label costs; 0: that one is far away
     };
     class Search;
 
-    Search search_for(const MatrixFView& primitive, double radius) const;
+    std::vector<Place> places() const;  ///< of the known primitives
+    OwnLabel own_label(const Place& place, double lead) const;
+    int64_t source_of(const MatrixFView& primitive, int64_t run, double cost) const;
 
-    std::vector<Column> columns_;     ///< all known frames, run after run with gaps between
-    std::vector<int32_t> column_of_;  ///< by row of the index
-    std::optional<KnnIndex> index_;   ///< nothing when nothing is known
+    std::vector<Run> runs_;
+    std::optional<WarpSearch> search_;  ///< of the runs
 };
 
-/// The label of each of the primitives. The same for any number of threads.
+/// The label of each of the primitives, within the limits that the known ones teach. The same for
+/// any number of threads.
 std::vector<LabelGuess> transfer_labels(const KnowledgeBase& known, const MatrixFView& features,
                                         std::span<const CorpusPrimitive> primitives,
                                         const LabelTransferOptions& options, int threads);

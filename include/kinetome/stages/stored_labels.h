@@ -15,7 +15,8 @@ namespace kinetome {
 
 /// The primitives of a generation side by side, in the order of its file.
 struct PrimitiveFeatures {
-    MatrixF features;  ///< all frames × d, as the neighbourhood graphs were searched in
+    MatrixF features;  ///< all frames × d: those the neighbourhood graphs were searched in, as
+                       ///< movement_rows
     std::vector<CorpusPrimitive> primitives;
 };
 
