@@ -30,6 +30,7 @@
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/stages/corpus_shape.h"
 #include "kinetome/stages/open_store.h"
+#include "kinetome/stages/pose_hierarchy_file.h"
 #include "kinetome/stages/rates.h"
 #include "kinetome/stages/reindex.h"
 #include "kinetome/store/feature_store.h"
@@ -239,6 +240,18 @@ double measure_index(double count, int turns) {
     return nanoseconds(least.cpu, rows.rows());
 }
 
+/// Poses, each as often as there are levels in a balanced tree of the leaves found.
+double poses_by_levels(const Generation& generation) {
+    const ArtifactReader file = generation.open("pose_hierarchy.h5");
+    double values = 0;
+    for (const std::string& clip_class : hierarchy_classes(file)) {
+        const PoseHierarchy hierarchy = read_pose_hierarchy(file, "/" + clip_class).hierarchy;
+        values += static_cast<double>(hierarchy.nodes.front().rows) *
+                  (1 + std::log2(static_cast<double>(hierarchy.leaves())));
+    }
+    return values;
+}
+
 std::string processor() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {
@@ -252,6 +265,7 @@ enum StageNumber : size_t {
     features_stage,
     pose_clusters_stage,
     strings_stage,
+    pose_hierarchy_stage,
     neighbors_stage,
     segments_stage,
     primitives_stage,
@@ -292,6 +306,7 @@ Rates measure(const Options& options) {
     rates.frames = shard_rates(frames_stage, frames * values_of_frames(shape));
     rates.features =
         shard_rates(features_stage, frames * values_of_features(shape, features, 120.0));
+    rates.pose_hierarchy = shard_rates(pose_hierarchy_stage, poses_by_levels(opened.generation));
     rates.neighbors =
         shard_rates(neighbors_stage, 2 * size_of_graphs(opened.generation, "neighbors").edges);
     const GraphSize searched = size_of_graphs(opened.generation, "corpus_neighbors");

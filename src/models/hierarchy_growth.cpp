@@ -193,6 +193,16 @@ GrownHierarchy grow_pose_hierarchy(const RowSource& poses, const RowSource& prin
     return assembled(std::move(levels), poses.columns(), principal_columns, options);
 }
 
+void pack(Packer& out, const GrownHierarchy& grown) {
+    pack(out, grown.hierarchy);
+    pack(out, grown.maps);
+}
+
+void unpack(Unpacker& in, GrownHierarchy& grown) {
+    unpack(in, grown.hierarchy);
+    unpack(in, grown.maps);
+}
+
 void pack(Packer& out, const NodeModel& model) {
     out.put(model.rows).put(model.error);
     pack(out, model.mean);

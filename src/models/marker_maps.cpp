@@ -82,4 +82,16 @@ void unpack(Unpacker& in, MarkerMap& map) {
     unpack(in, map.principal_covariance);
 }
 
+void pack(Packer& out, const MarkerMaps& maps) {
+    pack(out, maps.estimated_columns);
+    out.put(static_cast<uint64_t>(maps.maps.size()));
+    for (const MatrixD& map : maps.maps) pack(out, map);
+}
+
+void unpack(Unpacker& in, MarkerMaps& maps) {
+    unpack(in, maps.estimated_columns);
+    maps.maps.resize(in.get<uint64_t>());
+    for (MatrixD& map : maps.maps) unpack(in, map);
+}
+
 }  // namespace kinetome

@@ -197,6 +197,25 @@ std::vector<PartitionShape> partition_shapes(const CorpusShape& corpus,
     return partitions;
 }
 
+std::vector<HierarchyShape> hierarchy_shapes(const CorpusShape& corpus,
+                                             const ReindexOptions& options) {
+    constexpr int64_t principal_markers = 12;  // of 31, at the default tolerance
+    std::vector<std::vector<ClipExtent>> extents(corpus.classes.size());
+    for (const ClipShape& clip : corpus.clips) {
+        extents[clip.clip_class].push_back(
+            {hash_name(clip.name), clip.frames, clip.frames_at(options.features.pose_rate)});
+    }
+    std::vector<HierarchyShape> shapes;
+    for (size_t i = 0; i < extents.size(); ++i) {
+        const PieceLayout layout = layout_pieces(extents[i]);
+        const int64_t joints = corpus.classes[i].joints;
+        if (layout.rows() == 0) continue;
+        shapes.push_back({static_cast<int64_t>(layout.pieces.size()),
+                          {layout.rows(), 3 * joints, 3 * std::min(principal_markers, joints)}});
+    }
+    return shapes;
+}
+
 bool goes_through_takes(std::string_view stage) {
     return stage == "segments" || stage == "primitives";
 }

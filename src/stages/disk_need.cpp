@@ -99,6 +99,21 @@ uint64_t motion_strings_bytes(const PartitionShape& partition) {
         .bytes();
 }
 
+/// write_pose_hierarchy.
+uint64_t pose_hierarchy_bytes(const HierarchyShape& shape, const PoseHierarchyOptions& options) {
+    const HierarchySize& size = shape.size;
+    const int64_t leaves = expected_leaves(size.rows, options);
+    return Group()
+        .rows(size.columns / 3, {name})
+        .rows(size.principal, {index, index})
+        .rows(1, {number, index, number, number, number})
+        .rows(2 * leaves - 1,
+              {index, index, index, index, number, number, number, size.principal * number})
+        .rows(leaves, {size.columns * number, size.columns * options.dimension * number, number,
+                       size.principal * (size.columns - size.principal) * number})
+        .bytes();
+}
+
 /// write_segments and write_primitives.
 uint64_t take_cuts_bytes(const std::string& stage, const CorpusShape& corpus,
                          const ReindexOptions& options) {
@@ -187,6 +202,18 @@ std::map<std::string, double> byte_corrections(const Generation& last,
     return corrections;
 }
 
+/// A level a file: together the models, and as much again of what levels hand down.
+DiskNeed hierarchy_checkpoints(const CorpusShape& corpus, const ReindexOptions& options) {
+    DiskNeed need;
+    for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+        const auto leaves =
+            static_cast<uint64_t>(expected_leaves(shape.size.rows, options.pose_hierarchy));
+        need.bytes += 2 * leaves * leaf_bytes(shape.size, options.pose_hierarchy);
+        need.inodes += 24;
+    }
+    return need;
+}
+
 /// Models after the last iteration of every partition, and one more while a file is replaced.
 DiskNeed checkpoints(const CorpusShape& corpus, const ReindexOptions& options) {
     const bool keeps_best = options.pose_clusters.mixture.restarts > 1 ||
@@ -221,6 +248,12 @@ uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const 
     if (stage_named(stage).sharded) return shard_bytes(stage, cut, corpus, options);
     if (goes_through_takes(stage)) return take_cuts_bytes(stage, corpus, options);
     uint64_t bytes = 0;
+    if (stage == "pose_hierarchy") {
+        for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+            bytes += pose_hierarchy_bytes(shape, options.pose_hierarchy);
+        }
+        return bytes;
+    }
     for (const PartitionShape& partition : partition_shapes(corpus, options)) {
         if (stage == "pose_clusters") {
             bytes += pose_clusters_bytes(partition, options.pose_clusters.mixture);
@@ -254,12 +287,14 @@ DiskNeed disk_need(const RunPlan& plan, const CorpusShape& corpus,
         need.bytes += more.bytes;
         need.inodes += more.inodes;
     };
-    bool clusters = false;
+    bool clusters = false, hierarchies = false;
     for (const size_t i : to_make) {
         add({planned_bytes[i], 2});  // the file and its receipt
         clusters = clusters || plan.work[i].stage->name == "pose_clusters";
+        hierarchies = hierarchies || plan.work[i].stage->name == "pose_hierarchy";
     }
     if (clusters) add(checkpoints(corpus, plan.options));
+    if (hierarchies) add(hierarchy_checkpoints(corpus, plan.options));
     if (copies) {
         add({std::accumulate(planned_bytes.begin(), planned_bytes.end(), uint64_t{0}),
              planned_bytes.size()});

@@ -130,6 +130,11 @@ constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
 constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ratio},
                                          std::pair{"bic", ClusterCountRule::bic}};
 
+constexpr std::array leaf_rule_names = {std::pair{"rms", LeafRule::rms},
+                                        std::pair{"max", LeafRule::maximum}};
+constexpr std::array map_rule_names = {std::pair{"shrinkage", MarkerMapRule::shrinkage},
+                                       std::pair{"least-squares", MarkerMapRule::least_squares}};
+
 constexpr std::array off_and_on = {std::pair{"off", false}, std::pair{"on", true}};
 constexpr std::array knn_engine_names = {std::pair{"blocks", KnnEngine::blocks},
                                          std::pair{"flann", KnnEngine::flann}};
@@ -170,6 +175,7 @@ void require(bool holds, const std::string& what) {
 std::vector<OptionRow> option_rows(ReindexOptions& o) {
     PoseClusterOptions& p = o.pose_clusters;
     MixtureOptions& m = p.mixture;
+    PoseHierarchyOptions& h = o.pose_hierarchy;
     NeighborOptions& g = o.neighbors;
     ActivityOptions& a = o.activities;
     PrimitiveOptions& s = o.primitives;
@@ -216,6 +222,23 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "longest submotion λ′, seconds"),
         number("tau", "motion_strings", o.motion_strings.tau,
                "distance below which letters are equal; 0: the median adjacent distance"),
+        number("principal-tolerance", "pose_hierarchy", o.principal_markers.tolerance,
+               "mm per marker that the components which principal markers stand for may leave "
+               "unexplained"),
+        number("principal-starts", "pose_hierarchy", o.principal_markers.starts,
+               "sets of principal markers that the best is chosen from"),
+        number("leaf-dimension", "pose_hierarchy", h.dimension,
+               "of the linear model in each leaf of the pose hierarchy"),
+        number("leaf-tolerance", "pose_hierarchy", h.leaf_tolerance,
+               "mm per marker that a leaf's linear model may leave unexplained"),
+        choice("leaf-rule", "pose_hierarchy", h.leaf_rule, leaf_rule_names,
+               "what of a leaf is within the tolerance: the RMS over its poses, or every pose"),
+        number("leaf-overlap", "pose_hierarchy", h.overlap,
+               "poses within so many half gaps of a plane belong to both sides; 0: to one"),
+        choice("marker-maps", "pose_hierarchy", h.maps.rule, map_rule_names,
+               "how a leaf's map to the other markers is found"),
+        number("parent-weight", "pose_hierarchy", h.maps.parent_weight,
+               "poses that the map of a node's parent counts as; marker-maps shrinkage"),
         number("radius", "neighbors", g.knn.radius, "frames no farther apart are neighbours, cm"),
         number("neighbours", "neighbors", g.knn.neighbours,
                "at most so many of each frame, itself among them, the nearest"),
@@ -261,9 +284,11 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
 ReindexOptions paper_options() {
     ReindexOptions options;
     options.partition.rule = PartitionRule::none;  // S1 clusters each database as a whole
-    options.neighbors.knn.radius = 64;             // S3 §5
-    options.activities.method = ActivityMethod::region_growing;  // S3 §3.1
-    options.primitives.method = PrimitiveMethod::warping_paths;  // S3 §3.2
+    options.pose_hierarchy.overlap = 0.1;          // S2 §4, fuzzy partition
+    options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1
+    options.neighbors.knn.radius = 64;                                // S3 §5
+    options.activities.method = ActivityMethod::region_growing;       // S3 §3.1
+    options.primitives.method = PrimitiveMethod::warping_paths;       // S3 §3.2
     return options;
 }
 
@@ -347,6 +372,12 @@ void check_options(const ReindexOptions& o) {
     require(m.variance_floor > 0, "variance-floor must be above 0");
     require(o.motion_strings.longest_submotion > 0, "longest-submotion must be above 0");
     require(o.motion_strings.tau >= 0, "tau must not be negative");
+    require(o.principal_markers.tolerance > 0 && o.principal_markers.starts > 0,
+            "principal-tolerance and principal-starts must be above 0");
+    require(o.pose_hierarchy.dimension > 0 && o.pose_hierarchy.leaf_tolerance > 0,
+            "leaf-dimension and leaf-tolerance must be above 0");
+    require(o.pose_hierarchy.overlap >= 0 && o.pose_hierarchy.maps.parent_weight >= 0,
+            "leaf-overlap and parent-weight must not be negative");
     require(o.neighbors.knn.radius > 0, "radius must be above 0");
     require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
     require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");

@@ -104,6 +104,24 @@ uint64_t partition_bytes(const std::string& stage, const PartitionShape& partiti
                                 options.pose_clusters, resources.threads, ranks);
 }
 
+/// Growth of the largest hierarchy, and all of them until the file is written.
+uint64_t hierarchy_bytes(const CorpusShape& corpus, const ReindexOptions& options,
+                         const Resources& resources, int ranks) {
+    uint64_t largest = 0, results = 0;
+    for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+        const HierarchySize& size = shape.size;
+        const auto share = static_cast<uint64_t>(size.rows / ranks) * sizeof(float);
+        const int64_t nodes = expected_leaves(size.rows, options.pose_hierarchy);
+        largest =
+            std::max(largest, growth_bytes(size, options.pose_hierarchy) +
+                                  share * static_cast<uint64_t>(size.columns + size.principal) +
+                                  static_cast<uint64_t>(std::min<int64_t>(nodes, 2048)) *
+                                      pass_bytes_per_node(size.columns, resources.threads));
+        results += static_cast<uint64_t>(nodes) * leaf_bytes(size, options.pose_hierarchy);
+    }
+    return largest + results;
+}
+
 }  // namespace
 
 uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
@@ -118,6 +136,10 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
     if (goes_through_takes(stage)) {
         const uint64_t takes = at_rest + pipeline_bytes(stage, corpus, options, resources);
         return stage == "primitives" ? takes + graph_feature_bytes(corpus, options) : takes;
+    }
+    if (stage == "pose_hierarchy") {
+        return std::min(at_rest + hierarchy_bytes(corpus, options, resources, ranks),
+                        std::max(resources.memory_bytes, at_rest));
     }
     const auto partitions = partition_shapes(corpus, options);
     std::vector<int64_t> rows;

@@ -45,6 +45,7 @@ class KeyMaker {
             key.add("subjects", subjects_digest(survey_, options_.partition));
             key.add("groups", groups_digest());
         }
+        if (stage.name == "pose_hierarchy") key.add("groups", groups_digest());
         return key;
     }
 

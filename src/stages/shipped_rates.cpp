@@ -22,6 +22,11 @@ seconds_per_file = 0.01237
 nanoseconds_per_value = 15.44
 serial_share = 0.5
 
+[pose_hierarchy]
+seconds_per_file = 0.005
+nanoseconds_per_value = 1800.0
+serial_share = 0.1
+
 [neighbors]
 seconds_per_file = 0.003
 nanoseconds_per_value = 60.0

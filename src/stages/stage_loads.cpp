@@ -1,6 +1,7 @@
 #include "kinetome/stages/stage_loads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "kinetome/base/error.h"
@@ -69,6 +70,25 @@ LoadItem strings_item(const PartitionShape& partition, const PoseRates& rates) {
          clusters * clusters * rates.accessibility_nanoseconds_per_pair) *
         nanosecond;
     item.exchanged_bytes = rows * sizeof(int32_t);
+    return item;
+}
+
+/// Levels, as long as nothing is grown: those of a balanced tree.
+double expected_levels(const HierarchyShape& shape, const PoseHierarchyOptions& options) {
+    return 1 + std::log2(static_cast<double>(expected_leaves(shape.size.rows, options)));
+}
+
+LoadItem hierarchy_item(const HierarchyShape& shape, const PoseHierarchyOptions& options,
+                        const ShardRates& rates) {
+    const auto leaves = static_cast<double>(expected_leaves(shape.size.rows, options));
+    LoadItem item;
+    item.amount = shape.size.rows;
+    item.pieces = shape.pieces;
+    item.seconds = static_cast<double>(shape.size.rows) * expected_levels(shape, options) *
+                   rates.nanoseconds_per_value * nanosecond;
+    // Second moments of every node, which are twice as many as leaves.
+    item.exchanged_bytes =
+        leaves * static_cast<double>(shape.size.columns * shape.size.columns) * sizeof(double);
     return item;
 }
 
@@ -153,8 +173,19 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
     if (goes_through_takes(stage)) {
         return load_of_takes(shard_rates(stage, rates), corpus, options);
     }
-    load.serial_share = rates.poses.serial_share;
     load.shares_items = true;
+    if (stage == "pose_hierarchy") {
+        load.serial_share = rates.pose_hierarchy.serial_share;
+        for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+            load.items.push_back(
+                hierarchy_item(shape, options.pose_hierarchy, rates.pose_hierarchy));
+        }
+        if (!load.items.empty()) {
+            load.items.front().fixed_seconds = rates.pose_hierarchy.seconds_per_file;
+        }
+        return load;
+    }
+    load.serial_share = rates.poses.serial_share;
     for (const PartitionShape& partition : partition_shapes(corpus, options)) {
         load.items.push_back(stage == "pose_clusters"
                                  ? clusters_item(partition, options, rates.poses)

@@ -183,7 +183,7 @@ TEST_CASE("info tells what a store holds", "[commands]") {
     CHECK(contains(output, "2 indexed, 1 quarantined, 300 frames"));
     CHECK(contains(output, corpus.path().string()));
     for (const std::string stage : {"frames", "features", "pose_clusters", "motion_strings",
-                                    "neighbors", "segments", "primitives"}) {
+                                    "pose_hierarchy", "neighbors", "segments", "primitives"}) {
         CHECK(contains(output, "\n" + stage + " "));
     }
 }

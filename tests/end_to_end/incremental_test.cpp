@@ -55,7 +55,7 @@ Names beginning_with(const Names& names, const std::string& beginning) {
 Names from_stage_on(const StoreOnDisk& store, const std::string& stage) {
     const std::map<std::string, std::vector<std::string>> made_of = {
         {"frames", {"features"}},
-        {"features", {"pose_clusters", "neighbors"}},
+        {"features", {"pose_clusters", "pose_hierarchy", "neighbors"}},
         {"neighbors", {"segments"}},
         {"segments", {"primitives"}},
         {"pose_clusters", {"motion_strings"}}};
@@ -166,6 +166,8 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
              Change{"--tau", "5.5", "motion_strings", "option tau was 0, is 5.5"},
              Change{"--longest-submotion", "1", "motion_strings",
                     "option longest-submotion was 1.6666666666666667, is 1"},
+             Change{"--leaf-tolerance", "25", "pose_hierarchy",
+                    "option leaf-tolerance was 20, is 25"},
              Change{"--radius", "60", "neighbors", "option radius was 72, is 60"},
              Change{"--method", "region-growing", "segments",
                     "option method was repetition, is region-growing"},
@@ -210,7 +212,8 @@ TEST_CASE("the option --only makes the stages it names, and says what is left ou
 
     const RunLog rest(require_program(reindex(corpus, store.path())).errors);
     Names left = store.artifacts("neighbors-");
-    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "segments.h5", "primitives.h5"});
+    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "pose_hierarchy.h5", "segments.h5",
+                     "primitives.h5"});
     CHECK(rest.names_made() == left);
     require_program(reindex(corpus, fresh.path()));
     CHECK(store.digests() == fresh.digests());

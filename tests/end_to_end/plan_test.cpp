@@ -235,6 +235,10 @@ serial_share = 0
 seconds_per_file = 0
 nanoseconds_per_value = 0
 serial_share = 0
+[pose_hierarchy]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
 [corpus_neighbors]
 seconds_per_file = 0
 nanoseconds_per_value = 0

@@ -70,12 +70,33 @@ TEST_CASE("values that make no sense are refused before a run begins") {
         CAPTURE(toml);
         CHECK_THROWS_AS(check_options(parsed(toml)), UsageError);
     };
-    for (const char* toml :
-         {"shard-frames = 8191", "pose-rate = 0", "variance-share = 1.5", "least-clusters = 9000",
-          "cluster-rule = 'bic'", "compression = 'zip'", "subject-from = '('",
-          "subject-from = 'no group'", "min-gain = -1", "joint-map = '/no/such/file'", "radius = 0",
-          "neighbours = 0", "stack-offset = -0.1", "knn-engine = 'ann'", "adapt-radius = -1",
-          "joints = 'tail'", "joints = ''", "corpus-graph = 'maybe'", "corpus-exclusion = -1"}) {
+    for (const char* toml : {"shard-frames = 8191",
+                             "pose-rate = 0",
+                             "variance-share = 1.5",
+                             "least-clusters = 9000",
+                             "cluster-rule = 'bic'",
+                             "compression = 'zip'",
+                             "subject-from = '('",
+                             "subject-from = 'no group'",
+                             "min-gain = -1",
+                             "joint-map = '/no/such/file'",
+                             "radius = 0",
+                             "neighbours = 0",
+                             "stack-offset = -0.1",
+                             "knn-engine = 'ann'",
+                             "adapt-radius = -1",
+                             "joints = 'tail'",
+                             "joints = ''",
+                             "corpus-graph = 'maybe'",
+                             "corpus-exclusion = -1",
+                             "principal-tolerance = 0",
+                             "principal-starts = 0",
+                             "leaf-dimension = 0",
+                             "leaf-tolerance = 0",
+                             "leaf-rule = 'mean'",
+                             "leaf-overlap = -1",
+                             "marker-maps = 'ridge'",
+                             "parent-weight = -1"}) {
         refused(toml);
     }
     CHECK_THROWS_AS(parsed("pose-rate = inf"), UsageError);

@@ -71,6 +71,9 @@ struct GrownHierarchy {
     MarkerMaps maps;
 };
 
+void pack(Packer& out, const GrownHierarchy& grown);
+void unpack(Unpacker& in, GrownHierarchy& grown);
+
 /// What a run keeps of its growth: levels as they are finished, to go on from.
 struct GrowthCheckpoints {
     std::function<void(int level, const HierarchyLevel&)> save = [](int, const HierarchyLevel&) {};

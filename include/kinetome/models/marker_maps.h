@@ -45,6 +45,9 @@ struct MarkerMaps {
     std::vector<MatrixD> maps;               ///< C maps, p × (f - p)
 };
 
+void pack(Packer& out, const MarkerMaps& maps);
+void unpack(Unpacker& in, MarkerMaps& maps);
+
 /// All columns that are not principal.
 std::vector<int32_t> estimated_columns(int64_t columns,
                                        const std::vector<int32_t>& principal_columns);

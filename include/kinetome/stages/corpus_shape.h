@@ -10,6 +10,7 @@
 
 #include "kinetome/run/shard_plan.h"
 #include "kinetome/stages/options.h"
+#include "kinetome/stages/pose_hierarchy_memory.h"
 #include "kinetome/stages/survey.h"
 #include "kinetome/store/catalog.h"
 
@@ -83,6 +84,16 @@ struct PartitionShape {
     /// varied. Of CMU's subjects alone 4 to 15 are kept, of all together 17.
     int64_t expected_components() const;
 };
+
+/// Poses of one class, whose hierarchy will be grown.
+struct HierarchyShape {
+    int64_t pieces = 0;  ///< that ranks can share (base/pieces.h)
+    HierarchySize size;  ///< with as many principal columns as real motion has
+};
+
+/// One a class that has poses.
+std::vector<HierarchyShape> hierarchy_shapes(const CorpusShape& corpus,
+                                             const ReindexOptions& options);
 
 /// As pose_partitions will make them; those too small to be clustered are left out.
 std::vector<PartitionShape> partition_shapes(const CorpusShape& corpus,

@@ -14,9 +14,11 @@
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/math/knn.h"
 #include "kinetome/models/activity.h"
+#include "kinetome/models/hierarchy_growth.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/primitive.h"
 #include "kinetome/models/primitive_clusters.h"
+#include "kinetome/models/principal_markers.h"
 #include "kinetome/models/subject_partition.h"
 
 namespace kinetome {
@@ -65,6 +67,8 @@ struct ReindexOptions {
     PartitionOptions partition;
     PoseClusterOptions pose_clusters;
     StringOptions motion_strings;
+    PrincipalMarkerOptions principal_markers;
+    PoseHierarchyOptions pose_hierarchy;
     NeighborOptions neighbors;
     CorpusNeighborOptions corpus_neighbors;
     ActivityOptions activities;

@@ -1,0 +1,65 @@
+#include "kinetome/stages/pose_hierarchy_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinetome/base/error.h"
+
+namespace kinetome {
+
+int64_t expected_leaves(int64_t rows, const PoseHierarchyOptions& options) {
+    // Frames a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they grow
+    // with both.
+    constexpr double frames_per_leaf = 60;
+    const double frames = frames_per_leaf * std::pow(options.leaf_tolerance / 20, 1.75) *
+                          std::pow(options.dimension / 4.0, 1.7);
+    return std::max<int64_t>(1, std::llround(static_cast<double>(rows) / std::max(frames, 1.0)));
+}
+
+uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& options) {
+    const int64_t values = size.columns * (options.dimension + 1) +
+                           size.principal * (size.columns - size.principal) + 2 * size.principal;
+    return static_cast<uint64_t>(values) * sizeof(double);
+}
+
+uint64_t growth_bytes(const HierarchySize& size, const PoseHierarchyOptions& options) {
+    constexpr uint64_t place_bytes = 8;
+    // A level is held a second time while its checkpoint is written.
+    constexpr double held = 1.5;
+    const auto leaves = static_cast<double>(expected_leaves(size.rows, options));
+    return static_cast<uint64_t>(size.rows) * place_bytes +
+           static_cast<uint64_t>(held * leaves * static_cast<double>(leaf_bytes(size, options)));
+}
+
+HierarchyMemory share_memory(const HierarchySize& size, const PoseHierarchyOptions& options,
+                             const Resources& resources, int ranks) {
+    constexpr uint64_t reserve = 64 << 20;  // readers, logs, what the heap does not give back
+    constexpr uint64_t least_nodes = 16, most_nodes = 2048;
+    const uint64_t per_node = pass_bytes_per_node(size.columns, resources.threads);
+    const uint64_t needed = resident_bytes() + reserve + growth_bytes(size, options);
+    if (needed + least_nodes * per_node > resources.memory_bytes) {
+        throw UsageError(fmt::format(
+            "pose_hierarchy: {} poses need {} of memory at each rank, but {} are granted ({}): "
+            "raise --memory or --leaf-tolerance",
+            size.rows, describe_bytes(needed + least_nodes * per_node),
+            describe_bytes(resources.memory_bytes), resources.memory_source));
+    }
+    uint64_t left = resources.memory_bytes - needed;
+    const auto take = [&](uint64_t wanted) {
+        const uint64_t taken = std::min(wanted, left);
+        left -= taken;
+        return taken;
+    };
+    HierarchyMemory memory;
+    const uint64_t nodes = std::clamp(left / 4 / per_node, least_nodes, most_nodes);
+    memory.nodes_per_pass = static_cast<int64_t>(nodes);
+    take(nodes * per_node);
+    const auto share = static_cast<uint64_t>(size.rows / ranks + 1) * sizeof(float);
+    memory.principal_bytes = take(share * static_cast<uint64_t>(size.principal));
+    memory.pose_bytes = take(share * static_cast<uint64_t>(size.columns));
+    return memory;
+}
+
+}  // namespace kinetome
