@@ -8,6 +8,12 @@
 #include "kinetome/base/error.h"
 
 namespace kinetome {
+namespace {
+
+/// Of one pose's place in the tree.
+constexpr uint64_t place_bytes = 8;
+
+}  // namespace
 
 int64_t expected_leaves(int64_t rows, const PoseHierarchyOptions& options) {
     // Frames a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they grow
@@ -25,7 +31,6 @@ uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& optio
 }
 
 uint64_t growth_bytes(const HierarchySize& size, const PoseHierarchyOptions& options) {
-    constexpr uint64_t place_bytes = 8;
     // A level is held a second time while its checkpoint is written.
     constexpr double held = 1.5;
     const auto leaves = static_cast<double>(expected_leaves(size.rows, options));
@@ -35,23 +40,26 @@ uint64_t growth_bytes(const HierarchySize& size, const PoseHierarchyOptions& opt
 
 HierarchyMemory share_memory(const HierarchySize& size, const PoseHierarchyOptions& options,
                              const Resources& resources, int ranks) {
-    constexpr uint64_t reserve = 64 << 20;  // readers, logs, what the heap does not give back
+    constexpr uint64_t reserve = 32 << 20;  // readers, logs, what the heap does not give back
     constexpr uint64_t least_nodes = 16, most_nodes = 2048;
     const uint64_t per_node = pass_bytes_per_node(size.columns, resources.threads);
-    const uint64_t needed = resident_bytes() + reserve + growth_bytes(size, options);
-    if (needed + least_nodes * per_node > resources.memory_bytes) {
+    const uint64_t at_rest = resident_bytes() + reserve;
+    const uint64_t needed =
+        at_rest + static_cast<uint64_t>(size.rows) * place_bytes + least_nodes * per_node;
+    if (needed > resources.memory_bytes) {
         throw UsageError(fmt::format(
             "pose_hierarchy: {} poses need {} of memory at each rank, but {} are granted ({}): "
-            "raise --memory or --leaf-tolerance",
-            size.rows, describe_bytes(needed + least_nodes * per_node),
-            describe_bytes(resources.memory_bytes), resources.memory_source));
+            "raise --memory",
+            size.rows, describe_bytes(needed), describe_bytes(resources.memory_bytes),
+            resources.memory_source));
     }
-    uint64_t left = resources.memory_bytes - needed;
+    uint64_t left = resources.memory_bytes - at_rest;
     const auto take = [&](uint64_t wanted) {
         const uint64_t taken = std::min(wanted, left);
         left -= taken;
         return taken;
     };
+    take(growth_bytes(size, options));
     HierarchyMemory memory;
     const uint64_t nodes = std::clamp(left / 4 / per_node, least_nodes, most_nodes);
     memory.nodes_per_pass = static_cast<int64_t>(nodes);

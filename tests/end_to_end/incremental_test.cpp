@@ -105,7 +105,7 @@ TEST_CASE("a new take alters one shard and what is made of all of them", "[incre
     CHECK(beginning_with(altered, "frames-").size() == 1);
     CHECK(beginning_with(altered, "features-").size() == 1);
     CHECK(beginning_with(altered, "neighbors-").size() == 1);
-    CHECK(altered.size() == 7);
+    CHECK(altered.size() == 8);
     CHECK(names_of(after) == names_of(before));
     const RunLog log(added.errors);
     CHECK(log.names_made() == altered);

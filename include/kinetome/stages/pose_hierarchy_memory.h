@@ -28,11 +28,13 @@ int64_t expected_leaves(int64_t rows, const PoseHierarchyOptions& options);
 /// Bytes of a leaf: mean, basis, map and plane.
 uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& options);
 
-/// Bytes that growth cannot do without at each rank: where every pose is, and the model.
+/// Bytes that growth is expected to take at each rank beside sums and rows that are kept: where
+/// every pose is, and the model.
 uint64_t growth_bytes(const HierarchySize& size, const PoseHierarchyOptions& options);
 
-/// First sums of a pass, then principal columns, then poses. Throws UsageError when not even the
-/// first fit into the memory granted.
+/// First the model that is expected, then sums of a pass, principal columns and poses. Throws
+/// UsageError when not even the places of all poses and the smallest pass fit into the memory
+/// granted.
 HierarchyMemory share_memory(const HierarchySize& size, const PoseHierarchyOptions& options,
                              const Resources& resources, int ranks);
 
