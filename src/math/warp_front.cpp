@@ -1,5 +1,6 @@
 #include "warp_front.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,9 +49,12 @@ void WarpFront::measure(const float* row, const RowRange& columns) {
                 squares[lane] += difference * difference;
             }
         }
+        // All roots at once: std::sqrt, which may set errno, is called lane by lane.
+        double* const distances = distances_.data() + first;
+        using Roots = Eigen::Array<double, lanes, 1>;
+        Eigen::Map<Roots>{distances} = Eigen::Map<const Roots>(squares).sqrt();
         for (int64_t lane = 0; lane < lanes; ++lane) {
-            distances_[static_cast<size_t>(first + lane)] =
-                squares[lane] <= squared_radius ? std::sqrt(squares[lane]) : unreachable;
+            distances[lane] = squares[lane] <= squared_radius ? distances[lane] : unreachable;
         }
     }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,9 +13,10 @@
 
 namespace kinetome {
 
+class WarpBounds;
 class WarpQuery;
 
-/// Sequences made ready to be searched: a copy of them, with a box around every few rows.
+/// Sequences made ready to be searched, with a copy of them.
 class WarpSearch {
   public:
     /// Each sequence is a range of the n × d rows. Throws std::invalid_argument for a range that is
@@ -22,6 +24,9 @@ class WarpSearch {
     /// goes on in the query (the first sequence of warp.h).
     WarpSearch(const MatrixFView& rows, std::span<const RowRange> sequences,
                std::vector<WarpStep> steps = slope_limited_steps());
+    ~WarpSearch();
+    WarpSearch(WarpSearch&&) noexcept;
+    WarpSearch& operator=(WarpSearch&&) noexcept;
 
     int64_t sequences() const { return static_cast<int64_t>(sequences_.size()); }
     /// As they were given.
@@ -39,9 +44,8 @@ class WarpSearch {
 
     MatrixF rows_;                     ///< of the sequences, one after another
     std::vector<RowRange> sequences_;  ///< of rows_
-    MatrixF lows_, highs_;             ///< boxes × d
-    std::vector<RowRange> boxes_;      ///< of each sequence
     std::vector<WarpStep> steps_;
+    std::unique_ptr<const WarpBounds> bounds_;  ///< nothing without sequences
 };
 
 /// What a query costs in each of the sequences: the least mean of its warp_matches there, to the
@@ -59,14 +63,9 @@ class WarpQuery {
     friend class WarpSearch;
     WarpQuery(const WarpSearch& search, const MatrixFView& rows);
 
-    std::vector<double> least_distances(int64_t sequence) const;
-    void bound_what_remains(std::span<const double> least, double* remaining) const;
-
     const WarpSearch& search_;
     MatrixF rows_;
     std::vector<double> bounds_;
-    MatrixD remaining_;  ///< sequences × rows: what a path from a row to the end adds at least
-    int64_t reach_ = 1;  ///< rows that a step goes on by, at most
 };
 
 }  // namespace kinetome
