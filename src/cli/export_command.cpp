@@ -14,7 +14,7 @@ namespace kinetome::cli {
 namespace {
 
 struct ExportFlags {
-    std::filesystem::path store, output;
+    std::filesystem::path store, output, labels;
     std::string what, format, generation = "current";
 };
 
@@ -34,13 +34,13 @@ std::string exported(const ExportFlags& flags) {
     if (flags.what == "primitive-graph") {
         const GraphFormat format = parse_graph_format(format_of(flags, "csv"));
         const OpenStore open(flags.store, flags.generation);
-        return write_graph(stored_graph(stored_primitives(open), clip_source(open.generation),
-                                        WalkOptions{}.longest_gap),
+        return write_graph(stored_graph(stored_primitives(open, flags.labels),
+                                        clip_source(open.generation), WalkOptions{}.longest_gap),
                            format);
     }
     const TableFormat format = parse_table_format(format_of(flags, "csv"));
     const OpenStore open(flags.store, flags.generation);
-    return write_table(export_table(open.generation, flags.what), format);
+    return write_table(export_table(open, flags.what, flags.labels), format);
 }
 
 }  // namespace
@@ -59,6 +59,9 @@ Command export_command() {
             app.add_option(
                 "--format", flags->format,
                 "csv or json (default: csv); of primitive-graph dot, too; of a timeline svg");
+            app.add_option("--labels", flags->labels,
+                           "of primitives and their graph: clip,first,end,label, such as `kinetome "
+                           "label` writes (default: STORE/labels.csv)");
             app.add_option("-o,--output", flags->output,
                            "file to write (default: standard output)");
             app.add_option("--generation", flags->generation,

@@ -20,27 +20,14 @@ struct LabelFlags {
     std::string format = "csv", generation = "current";
 };
 
-/// Rows of a table of labels or of annotated activities, whichever it is.
 std::vector<CycleRow> read_labels(const std::filesystem::path& file) {
-    const std::string text = read_source_file(file);
-    if (text.substr(0, text.find('\n')).find("end_lo") == std::string::npos) {
-        return parse_cycles_csv(text, file.string());
-    }
-    std::vector<CycleRow> rows;
-    for (const TruthRow& row : parse_truth_csv(text, file.string())) {
-        rows.push_back({row.clip, row.first, row.end, row.label, row.line});
-    }
-    return rows;
+    return parse_labels_csv(read_source_file(file), file.string());
 }
 
 Table make_table(const LabelFlags& flags, int threads) {
     const OpenStore open(flags.store, flags.generation);
-    std::vector<ClipPrimitive> primitives = stored_primitives(open);
+    std::vector<ClipPrimitive> primitives = stored_primitives(open, flags.from);
     const PrimitiveFeatures features = read_primitive_features(open.generation);
-    if (!flags.from.empty()) {
-        for (ClipPrimitive& primitive : primitives) primitive.label.clear();
-        label_primitives(primitives, read_labels(flags.from));
-    }
     const bool any_known = std::any_of(primitives.begin(), primitives.end(),
                                        [](const auto& one) { return !one.label.empty(); });
     if (!flags.truth.empty() && !any_known) {

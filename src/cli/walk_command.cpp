@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct WalkFlags {
-    fs::path store, output;
+    fs::path store, output, labels;
     std::string graph = "primitives", generation = "current";
     WalkOptions walk;
 };
@@ -92,8 +92,8 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
     }
     const MotionFormat format = format_of(flags.output);
     const OpenStore open(flags.store, flags.generation);
-    const PrimitiveWalk made =
-        walk_primitives(stored_primitives(open), clip_source(open.generation), flags.walk);
+    const PrimitiveWalk made = walk_primitives(stored_primitives(open, flags.labels),
+                                               clip_source(open.generation), flags.walk);
     if (format == MotionFormat::bvh) {
         write_file_atomically(flags.output, write_bvh(made.motion));
     } else {
@@ -123,9 +123,11 @@ Command walk_command() {
             app.add_option("--seconds", options.seconds, "wanted length")->capture_default_str();
             app.add_option("--seed", options.seed, "the same seed walks the same way")
                 ->capture_default_str();
-            app.add_option("--from", options.from,
-                           "label (of STORE/labels.csv) or cluster to begin with");
+            app.add_option("--from", options.from, "label or cluster to begin with");
             app.add_option("--to", options.to, "label or cluster to end with");
+            app.add_option("--labels", flags->labels,
+                           "of primitives: clip,first,end,label, such as `kinetome label` writes "
+                           "(default: STORE/labels.csv)");
             app.add_option("--fade", options.fade_seconds,
                            "seconds that going over from one primitive to another takes at most")
                 ->capture_default_str();

@@ -12,6 +12,14 @@ int64_t frame_field(const CsvRecord& record, size_t field, const std::string& pa
     return whole_number_field(record, field, "a frame number", path);
 }
 
+CycleRow cycle_row(const CsvRecord& record, const std::string& path) {
+    return {.clip = from_csv_text(record.fields[0]),
+            .first = frame_field(record, 1, path),
+            .end = frame_field(record, 2, path),
+            .label = from_csv_text(record.fields[3]),
+            .line = record.line};
+}
+
 }  // namespace
 
 void Annotations::append(const Annotations& other) {
@@ -54,11 +62,15 @@ std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& 
 std::vector<CycleRow> parse_cycles_csv(std::string_view text, const std::string& path) {
     std::vector<CycleRow> rows;
     for (const CsvRecord& record : parse_csv_table(text, path, cycle_header))
-        rows.push_back({.clip = from_csv_text(record.fields[0]),
-                        .first = frame_field(record, 1, path),
-                        .end = frame_field(record, 2, path),
-                        .label = from_csv_text(record.fields[3]),
-                        .line = record.line});
+        rows.push_back(cycle_row(record, path));
+    return rows;
+}
+
+std::vector<CycleRow> parse_labels_csv(std::string_view text, const std::string& path) {
+    std::vector<CycleRow> rows;
+    for (const CsvRecord& record : parse_csv_columns(text, path, cycle_header)) {
+        if (!record.fields[3].empty()) rows.push_back(cycle_row(record, path));
+    }
     return rows;
 }
 

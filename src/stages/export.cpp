@@ -11,6 +11,7 @@
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
 #include "kinetome/stages/segment_file.h"
+#include "kinetome/stages/stored_graph.h"
 #include "kinetome/store/json_text.h"
 #include "kinetome/store/neighbor_store.h"
 
@@ -139,7 +140,10 @@ Table segment_table(const Generation& generation) {
     return table;
 }
 
-Table primitive_table(const Generation& generation) {
+Table primitive_table(const OpenStore& open, const std::filesystem::path& labels) {
+    const Generation& generation = open.generation;
+    const std::vector<ClipPrimitive> labelled = stored_primitives(open, labels);
+    auto next = labelled.begin();
     Table table{{"clip", "first", "end", "activity_first", "cluster", "label"}, {}};
     const ArtifactReader file = generation.open("primitives.h5");
     const double rate = effector_rate_of(file);
@@ -155,7 +159,7 @@ Table primitive_table(const Generation& generation) {
                                   source_boundary(clip.clip, primitive.frames.first, rate),
                                   source_boundary(clip.clip, primitive.frames.end, rate),
                                   source_boundary(clip.clip, activity.frames.first, rate),
-                                  int64_t{stored.cluster}, ""});
+                                  int64_t{stored.cluster}, (next++)->label});
         }
     }
     return table;
@@ -190,12 +194,14 @@ Table neighbor_table(const Generation& generation) {
     return table;
 }
 
-Table export_table(const Generation& generation, std::string_view what) {
+Table export_table(const OpenStore& open, std::string_view what,
+                   const std::filesystem::path& labels) {
+    const Generation& generation = open.generation;
     if (what == "clips") return clip_table(generation);
     if (what == "letters") return letter_table(generation);
     if (what == "neighbors") return neighbor_table(generation);
     if (what == "segments") return segment_table(generation);
-    if (what == "primitives") return primitive_table(generation);
+    if (what == "primitives") return primitive_table(open, labels);
     throw UsageError(fmt::format(
         "cannot export '{}': there are clips, letters, neighbors, segments, primitives, "
         "primitive-graph, timeline",

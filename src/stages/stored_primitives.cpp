@@ -29,7 +29,8 @@ void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<
     }
 }
 
-std::vector<ClipPrimitive> stored_primitives(const OpenStore& open) {
+std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
+                                             const std::filesystem::path& labels) {
     if (!open.generation.ledger().find("primitives.h5")) {
         throw UsageError(
             "the store has no primitives yet; kinetome reindex CORPUS --store STORE "
@@ -47,9 +48,10 @@ std::vector<ClipPrimitive> stored_primitives(const OpenStore& open) {
                                   .cluster = stored.cluster});
         }
     }
-    const std::filesystem::path labels = open.store.path() / "labels.csv";
-    if (std::filesystem::exists(labels)) {
-        label_primitives(primitives, parse_cycles_csv(read_source_file(labels), labels.string()));
+    const std::filesystem::path own = open.store.path() / "labels.csv";
+    const std::filesystem::path& table = labels.empty() ? own : labels;
+    if (!labels.empty() || std::filesystem::exists(own)) {
+        label_primitives(primitives, parse_labels_csv(read_source_file(table), table.string()));
     }
     return primitives;
 }

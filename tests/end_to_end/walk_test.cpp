@@ -1,4 +1,6 @@
 // What `walk` and the export of its graph promise.
+#include <set>
+
 #include "program.h"
 #include "store_on_disk.h"
 #include "support/temporary_folder.h"
@@ -6,7 +8,7 @@
 
 namespace {
 
-constexpr int usage = 64, cannot_create = 73;
+constexpr int usage = 64, bad_data = 65, cannot_create = 73;
 
 /// A store of generated takes whose cycles are its labels.
 struct LabelledStore {
@@ -78,6 +80,56 @@ TEST_CASE("a walk is written as BVH and as AMC with its skeleton, the same for t
     CHECK(contains(
         require_program({"export", store.path, "letters", "--format", "dot"}, usage).errors,
         "expected csv or json"));
+}
+
+TEST_CASE("labels of some takes spread to others, and lead walks from then on", "[label]") {
+    const LabelledStore store;
+    // Of every other take nobody has told the labels.
+    std::string some;
+    std::set<std::string> takes;
+    const auto rows = lines_of(text_of(fs::path(store.path) / "labels.csv"));
+    for (const std::string& row : rows) {
+        takes.insert(row.substr(0, row.find(',')));
+        if (takes.size() % 2 == 1) some += row + "\n";
+    }
+    fs::remove(fs::path(store.path) / "labels.csv");
+    store.folder.write("some.csv", some);
+    const auto labelled = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"export", store.path, "primitives"};
+        words.insert(words.end(), more.begin(), more.end());
+        const auto lines = lines_of(require_program(words).output);
+        return std::count_if(lines.begin() + 1, lines.end(),
+                             [](const std::string& line) { return !line.ends_with(','); });
+    };
+    require_program({"label", store.path, "--from", store.output("some.csv"), "-o",
+                     store.output("labelled.csv")});
+    const std::string table = text_of(store.output("labelled.csv"));
+    CHECK(table.starts_with("clip,first,end,label,origin,cost,source_clip,source_first"));
+    CHECK(contains(table, ",known,"));
+    CHECK(contains(table, ",transferred,"));
+
+    const auto known = labelled({"--labels", store.output("some.csv")});
+    CHECK(labelled({}) == 0);
+    CHECK(known > 0);
+    CHECK(labelled({"--labels", store.output("labelled.csv")}) > known);
+    fs::copy_file(store.output("labelled.csv"), fs::path(store.path) / "labels.csv");
+    CHECK(labelled({}) > known);
+    fs::remove(fs::path(store.path) / "labels.csv");
+
+    const std::string label = rows.back().substr(rows.back().rfind(',') + 1);
+    const std::vector<std::string> walk{"walk",   store.path, "--seconds", "2",
+                                        "--from", label,      "-o",        store.output("w.bvh")};
+    CHECK(contains(require_program(walk, usage).errors, "no primitive has this label"));
+    auto with_labels = walk;
+    with_labels.insert(with_labels.end(), {"--labels", store.output("labelled.csv")});
+    CHECK(contains(require_program(with_labels).output, "path          " + label));
+
+    store.folder.write("bad.csv", "clip,first,end\n");
+    CHECK(contains(
+        require_program({"export", store.path, "primitives", "--labels", store.output("bad.csv")},
+                        bad_data)
+            .errors,
+        "bad.csv:1: expected a header line that begins with clip,first,end,label"));
 }
 
 TEST_CASE("a store without primitives says what makes them", "[walk]") {

@@ -25,6 +25,28 @@ TEST_CASE("annotations come back from their files") {
     CHECK(parse_cycles_csv("clip,first,end,label\na,1,2,b\n", "c.csv").front().label == "b");
 }
 
+TEST_CASE("labels are read from every table that begins like one, where there are any") {
+    const std::string four = "clip,first,end,label\na,1,2,b\na,2,4,\n";
+    const std::string more = "clip,first,end,label,origin,cost\na,1,2,b,known,\na,2,4,,none,\n";
+    for (const std::string& text : {four, more, write_truth_csv({{"a", 1, 2, "b", 1, 2}})}) {
+        const std::vector<CycleRow> rows = parse_labels_csv(text, "l.csv");
+        REQUIRE(rows.size() == 1);
+        CHECK(rows[0].clip == "a");
+        CHECK(rows[0].first == 1);
+        CHECK(rows[0].end == 2);
+        CHECK(rows[0].label == "b");
+        CHECK(rows[0].line == 2);
+    }
+    using Catch::Matchers::Contains;
+    CHECK_THROWS_WITH(parse_labels_csv("clip,end,first,label\n", "l.csv"), Contains("l.csv:1: "));
+    CHECK_THROWS_WITH(parse_labels_csv("clip,first,end\n", "l.csv"), Contains("l.csv:1: "));
+    CHECK_THROWS_WITH(parse_labels_csv("", "l.csv"), Contains("l.csv:1: "));
+    CHECK_THROWS_WITH(parse_labels_csv("clip,first,end,label,x\na,1,2,b\n", "l.csv"),
+                      Contains("l.csv:2: expected 5 fields, found 4"));
+    CHECK_THROWS_WITH(parse_labels_csv("clip,first,end,label\na,x,2,b\n", "l.csv"),
+                      Contains("'x'"));
+}
+
 TEST_CASE("annotations of another shape are refused, naming the line") {
     using Catch::Matchers::Contains;
     CHECK_THROWS_WITH(parse_truth_csv("", "t.csv"), Contains("t.csv:1: "));

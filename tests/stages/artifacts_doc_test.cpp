@@ -255,7 +255,7 @@ TEST_CASE("exported tables have the documented columns") {
             CHECK(cells[1] == "`" + text.substr(0, text.find_first_of("\r\n")) + "`");
             continue;
         }
-        const Table table = export_table(open.generation, what);
+        const Table table = export_table(open, what);
         CHECK(cells[1] == fmt::format("`{}`", fmt::join(table.columns, ",")));
     }
 }

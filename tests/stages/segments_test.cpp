@@ -53,7 +53,7 @@ TEST_CASE("segments cover every frame of every take, primitives every frame of a
         }
         CHECK(next == clip.frames);
     }
-    const Table primitives = primitive_table(generation);
+    const Table primitives = primitive_table(store);
     REQUIRE(primitives.rows.size() > generation.catalog().clips.size());
     std::map<std::pair<std::string, int64_t>, int64_t> ends;  // (clip, activity) → covered so far
     for (const auto& row : primitives.rows) {

@@ -41,4 +41,8 @@ std::string write_cycles_csv(const std::vector<CycleRow>& rows);
 std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& path);
 std::vector<CycleRow> parse_cycles_csv(std::string_view text, const std::string& path);
 
+/// Labelled frames of any table whose columns begin with clip,first,end,label: the two above, and
+/// what `kinetome label` writes. Further columns are ignored, rows without a label left out.
+std::vector<CycleRow> parse_labels_csv(std::string_view text, const std::string& path);
+
 }  // namespace kinetome

@@ -15,6 +15,10 @@ namespace kinetome {
 std::vector<CsvRecord> parse_csv_table(std::string_view text, const std::string& path,
                                        const std::vector<std::string>& header);
 
+/// The same of a table that may have more columns behind those of the header.
+std::vector<CsvRecord> parse_csv_columns(std::string_view text, const std::string& path,
+                                         const std::vector<std::string>& header);
+
 /// The field as a whole number from 0; `what` names it where it is none. Throws InputError.
 int64_t whole_number_field(const CsvRecord& record, size_t field, std::string_view what,
                            const std::string& path);

@@ -1,12 +1,13 @@
 // Tables that users take out of a store (design §7, CSV contracts).
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "kinetome/run/generation.h"
+#include "kinetome/stages/open_store.h"
 
 namespace kinetome {
 
@@ -37,10 +38,11 @@ Table neighbor_table(const Generation& generation);
 /// clip,first,end,kind,activity_cluster: frames at the source's rate, from 0, end exclusive.
 Table segment_table(const Generation& generation);
 
-/// clip,first,end,activity_first,cluster,label: likewise.
-Table primitive_table(const Generation& generation);
+/// clip,first,end,activity_first,cluster,label: likewise; labels as stored_primitives gives them.
+Table primitive_table(const OpenStore& open, const std::filesystem::path& labels = {});
 
 /// WHAT of `export`, by name. Throws UsageError listing what there is.
-Table export_table(const Generation& generation, std::string_view what);
+Table export_table(const OpenStore& open, std::string_view what,
+                   const std::filesystem::path& labels = {});
 
 }  // namespace kinetome

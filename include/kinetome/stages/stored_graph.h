@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -52,10 +53,11 @@ StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource
 /// the sources.
 void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<CycleRow>& labels);
 
-/// All primitives of a generation, in the order of clips and frames, labelled by the store's
-/// labels.csv (`clip,first,end,label`) where there is one. Throws UsageError when the generation
-/// has no primitives, InputError for a labels.csv that cannot be read.
-std::vector<ClipPrimitive> stored_primitives(const OpenStore& open);
+/// All primitives of a generation, in the order of clips and frames, with the labels of a table
+/// (parse_labels_csv): that of the file, or the store's labels.csv where there is one. Throws
+/// UsageError when the generation has no primitives, InputError for a table that cannot be read.
+std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
+                                             const std::filesystem::path& labels = {});
 
 /// What the generation tells of its clips, whose frames are read from its shards. It outlives this.
 ClipSource clip_source(const Generation& generation);
