@@ -18,12 +18,12 @@ struct LabelTransferOptions {
     double threshold = 108;  ///< mean cost of the path to a label, at most: another performer may
                              ///< be half as far away again as poses of one may (r = 72)
     double lead = 0.85;      ///< what costs less than this share of any other label leads enough
-    double recognised = 1;   ///< below 1: of the known primitives, those that LabelLimits let
-                             ///< through; only where no movement occurs that none is of, since
-                             ///< these then hardly keep out any
+    double recognised = 1;   ///< below 1: limits are learned that let this share of the known
+                             ///< primitives pass. Only where every movement has a label: they
+                             ///< hardly keep out one that has none
 };
 
-/// What a label may cost to be given.
+/// How near a label must be to be given.
 struct LabelLimits {
     double threshold = 0;  ///< at most
     double lead = 1;       ///< and no other label this share of it or less: cost / lead
