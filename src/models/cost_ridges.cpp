@@ -4,6 +4,7 @@
 
 #include "frame_count.h"
 #include "movement_period.h"
+#include "share_executed.h"
 
 namespace kinetome {
 namespace {
@@ -23,7 +24,7 @@ struct RidgeRule {
 /// The frames at which the movement of one frame recurs.
 struct Repetitions {
     std::vector<int64_t> frames;  ///< ascending, the frame itself among them
-    double clarity = 0;           ///< sum of how far their costs stay below the radius
+    double clarity = 0;           ///< sum of how far the cost rises from one to the next
 };
 
 using CostRow = Eigen::Ref<const RowVectorF>;
@@ -57,15 +58,23 @@ Repetitions repetitions_of(int64_t frame, const CostRow& costs, const RidgeRule&
             (after == found.frames.begin() || ridge_between(costs, *(after - 1), j, rule));
         if (!apart) continue;
         found.frames.insert(after, j);
-        found.clarity += rule.radius - double(costs[j]);
+    }
+    // The cost itself is least where the movement pauses: those frames recur well, but not on time.
+    for (size_t r = 1; r < found.frames.size(); ++r) {
+        const int64_t one = found.frames[r - 1], next = found.frames[r];
+        const float top = costs.segment(one, next - one + 1).maxCoeff();
+        found.clarity += double(top - std::max(costs[one], costs[next]));
     }
     return found;
 }
 
-/// Those of the frame whose movement recurs most, and most clearly; none when none recurs.
+/// Those of the frame whose movement recurs most, and most clearly; none when none recurs. Frames
+/// near the ends are not asked: their paths are cut short there, and pauses resemble them.
 std::vector<int64_t> clearest_repetitions(const FrameDistances& activity, const RidgeRule& rule) {
     Repetitions clearest;
+    const int64_t margin = std::min(rule.side, activity.size() / 4);
     for_each_cost_row(activity, rule.side, [&](int64_t i, const auto& costs) {
+        if (i < margin || i >= activity.size() - margin) return;
         Repetitions found = repetitions_of(i, costs, rule);
         if (found.clarity > clearest.clarity) clearest = std::move(found);
     });
@@ -89,8 +98,16 @@ class StretchCutter {
           shortest_(frame_count(options.shortest, options.rate)),
           side_(frame_count(options.cost_ridges.path_side, options.rate)) {}
 
+    /// From the activity's first frame to the end of its last primitive.
+    std::vector<int64_t> cuts(const RowRange& activity) const {
+        std::vector<int64_t> found = starts(activity, shortest_, 0);
+        if (!breaks_off(activity, found)) found.push_back(activity.end);
+        return found;
+    }
+
+  private:
     /// Ascending from the stretch's first frame. `spacing` is the least between two.
-    std::vector<int64_t> starts(const RowRange& stretch, int64_t spacing, int depth = 0) const {
+    std::vector<int64_t> starts(const RowRange& stretch, int64_t spacing, int depth) const {
         const FrameDistances distances(features_, stretch);
         const int64_t known_period = movement_period(
             distances, {shortest_, side_, options_.least_dip, options_.dip_of_deepest});
@@ -104,11 +121,22 @@ class StretchCutter {
         }
         if (depth < deepest_search) found = with_gaps_cut(found, stretch.end, period, depth);
         move_to(stretch.first, found);
-        if (double(stretch.end - found.back()) < options_.least_piece * period) found.pop_back();
+        const bool leaves_little =
+            double(stretch.end - found.back()) < options_.least_piece * period;
+        if (leaves_little && !ends_take(stretch)) found.pop_back();
         return found;
     }
 
-  private:
+    bool ends_take(const RowRange& stretch) const { return stretch.end == features_.rows(); }
+
+    /// Whether the end of the take cuts off what began last. Where a movement gives way to another
+    /// it is taken to be complete: when that happens cannot be told so exactly.
+    bool breaks_off(const RowRange& activity, std::vector<int64_t> starts) const {
+        if (starts.size() < 2 || !ends_take(activity)) return false;
+        for (int64_t& frame : starts) frame -= activity.first;
+        return share_executed({features_, activity}, starts, side_) < options_.least_executed;
+    }
+
     RidgeRule rule_for(int64_t known_period, int64_t spacing) const {
         RidgeRule rule{options_.radius, options_.least_ridge, options_.ridge_share, spacing, side_};
         if (known_period > 0) {
@@ -147,10 +175,9 @@ class StretchCutter {
 
 }  // namespace
 
-std::vector<int64_t> cost_ridge_starts(const MatrixFView& features, const RowRange& activity,
-                                       const PrimitiveOptions& options) {
-    return StretchCutter(features, options)
-        .starts(activity, frame_count(options.shortest, options.rate));
+std::vector<int64_t> cost_ridge_cuts(const MatrixFView& features, const RowRange& activity,
+                                     const PrimitiveOptions& options) {
+    return StretchCutter(features, options).cuts(activity);
 }
 
 }  // namespace kinetome

@@ -8,8 +8,9 @@
 
 namespace kinetome {
 
-/// First frames of the primitives of an activity, ascending from its own first frame.
-std::vector<int64_t> cost_ridge_starts(const MatrixFView& features, const RowRange& activity,
-                                       const PrimitiveOptions& options);
+/// Where the primitives of an activity begin, and where the last of them ends: ascending from the
+/// activity's first frame to its end, or to the start of what the end of the take cuts off.
+std::vector<int64_t> cost_ridge_cuts(const MatrixFView& features, const RowRange& activity,
+                                     const PrimitiveOptions& options);
 
 }  // namespace kinetome

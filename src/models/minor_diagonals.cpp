@@ -32,8 +32,8 @@ bool matches_stretches(const WarpingPath& path, const NeighborGraph& graph, cons
 
 }  // namespace
 
-std::vector<int64_t> minor_diagonal_starts(const NeighborGraph& graph, const RowRange& activity,
-                                           const PrimitiveOptions& options) {
+std::vector<int64_t> minor_diagonal_cuts(const NeighborGraph& graph, const RowRange& activity,
+                                         const PrimitiveOptions& options) {
     const WarpingPathOptions& paths = options.warping_paths;
     const PathRule rule{frame_count(options.shortest, options.rate), paths.steepest,
                         paths.least_symmetry};
@@ -46,12 +46,13 @@ std::vector<int64_t> minor_diagonal_starts(const NeighborGraph& graph, const Row
         }
     }
     std::ranges::sort(columns);
-    std::vector<int64_t> starts{activity.first};
+    std::vector<int64_t> cuts{activity.first};
     for (const int64_t column : columns) {
         const bool leaves_room = activity.end - column >= rule.shortest;
-        if (leaves_room && column - starts.back() >= rule.shortest) starts.push_back(column);
+        if (leaves_room && column - cuts.back() >= rule.shortest) cuts.push_back(column);
     }
-    return starts;
+    cuts.push_back(activity.end);
+    return cuts;
 }
 
 }  // namespace kinetome

@@ -8,8 +8,8 @@
 
 namespace kinetome {
 
-/// First frames of the primitives of an activity, ascending from its own first frame.
-std::vector<int64_t> minor_diagonal_starts(const NeighborGraph& graph, const RowRange& activity,
-                                           const PrimitiveOptions& options);
+/// Where the primitives of an activity begin and end: ascending from its first frame to its end.
+std::vector<int64_t> minor_diagonal_cuts(const NeighborGraph& graph, const RowRange& activity,
+                                         const PrimitiveOptions& options);
 
 }  // namespace kinetome

@@ -35,9 +35,9 @@ std::vector<Primitive> find_primitives(const MatrixFView& features, const Neighb
     for (size_t s = 0; s < segments.size(); ++s) {
         if (segments[s].kind != SegmentKind::activity) continue;
         const RowRange& activity = segments[s].frames;
-        std::vector<int64_t> cuts = follows_paths ? minor_diagonal_starts(near, activity, options)
-                                                  : cost_ridge_starts(features, activity, options);
-        cuts.push_back(activity.end);
+        const std::vector<int64_t> cuts = follows_paths
+                                              ? minor_diagonal_cuts(near, activity, options)
+                                              : cost_ridge_cuts(features, activity, options);
         for (size_t c = 0; c + 1 < cuts.size(); ++c) {
             primitives.push_back({{cuts[c], cuts[c + 1]}, static_cast<int32_t>(s)});
         }

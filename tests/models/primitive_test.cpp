@@ -118,11 +118,46 @@ TEST_CASE("a movement that goes faster and faster, or grows, is followed") {
     CHECK(primitives_of(growing.rows(), one_activity(growing.rows())).size() == 6);
 }
 
-TEST_CASE("a cycle that was cut short counts when it is half there, not when it has just begun") {
+TEST_CASE(
+    "what the end of the take cuts off is no primitive, nor part of one, but for the last of it") {
     const MatrixF rows = toy::Motion().circle(4, 40, 0).rows();
-    const MatrixF begun = rows.topRows(130), half = rows.topRows(145);
-    CHECK(lengths(primitives_of(begun, one_activity(begun))).size() == 3);
-    CHECK(lengths(primitives_of(half, one_activity(half))).size() == 4);
+    for (const int64_t frames : {125, 130, 140, 145, 152}) {
+        CAPTURE(frames);
+        const MatrixF cut_off = rows.topRows(frames);
+        const auto primitives = primitives_of(cut_off, one_activity(cut_off));
+        CHECK(primitives.size() == 3);
+        CHECK(all_near(lengths(primitives), 40, 3));
+    }
+    const MatrixF all_but_complete = rows.topRows(159);
+    CHECK(primitives_of(all_but_complete, one_activity(all_but_complete)).size() == 4);
+}
+
+TEST_CASE(
+    "before another activity a cycle counts when it is half there, not when it has just begun") {
+    for (const auto& [frames, count] : {std::pair{130, 3}, {145, 4}}) {
+        CAPTURE(frames);
+        MatrixF rows(frames + 100, toy::columns);
+        rows << toy::Motion().circle(4, 40, 0).rows().topRows(frames),
+            toy::Motion().circle(2, 50, 3).rows();
+        const std::vector<Segment> segments{{{0, frames}, SegmentKind::activity, 0},
+                                            {{frames, frames + 100}, SegmentKind::activity, 1}};
+        const auto primitives = primitives_of(rows, segments);
+        check_cover(primitives, segments);
+        CHECK(std::ranges::count(primitives, 0, &Primitive::activity) == count);
+    }
+}
+
+TEST_CASE("how long a movement pauses does not decide when it begins anew") {
+    toy::Motion motion;
+    for (const int64_t pause : {12, 20, 9, 16}) motion.raise(1, 40, 1).hold(pause, 0);
+    const MatrixF rows = motion.rows();
+    const auto primitives = primitives_of(rows, one_activity(rows));
+    CHECK(lengths(primitives).size() == 4);
+    if (primitives.size() == 4) {
+        CHECK(primitives[1].frames.first == Approx(52).margin(5));
+        CHECK(primitives[2].frames.first == Approx(112).margin(5));
+        CHECK(primitives[3].frames.first == Approx(161).margin(5));
+    }
 }
 
 TEST_CASE("where nothing recurs an activity is one primitive: a hold, a single movement") {

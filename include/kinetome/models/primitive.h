@@ -24,10 +24,12 @@ struct CostRidgeOptions {
     double periodic_ridge_share = 0.2;  ///< … by this where it has one
     double least_dip = 0.05;  ///< a period is the shortest lag at which the mean cost dips by this
                               ///< share of its top at shorter lags, and by …
-    double dip_of_deepest = 0.3;  ///< … this share of what its deepest dip has
-    double least_spacing = 0.6;   ///< periods between two repetitions
-    double longest_gap = 1.6;     ///< periods; a longer stretch is searched by itself
-    double least_piece = 0.4;     ///< periods; what is left at the end, if shorter, joins the last
+    double dip_of_deepest = 0.3;   ///< … this share of what its deepest dip has
+    double least_spacing = 0.75;   ///< periods between two repetitions
+    double longest_gap = 1.6;      ///< periods; a longer stretch is searched by itself
+    double least_piece = 0.4;      ///< periods; what is left at the end, if shorter, joins the last
+    double least_executed = 0.95;  ///< share of a movement that the end of the take cuts off, from
+                                   ///< which it counts as a primitive
 };
 
 /// Times are seconds, distances those of the features (cm).
@@ -47,7 +49,8 @@ struct PrimitiveOptions {
 };
 
 /// The primitives of each activity, in order, without gaps inside it: an activity in which nothing
-/// recurs is one primitive. Transitions have none. `features` are the n × d rows of the take,
+/// recurs is one primitive. Transitions have none; nor (by cost_ridges) has what an activity begins
+/// anew and has not completed when the take ends. `features` are the n × d rows of the take,
 /// `graph` is their neighbourhood graph, `segments` its activities (find_activities). Throws
 /// std::invalid_argument when these do not fit together, or the rate is not positive.
 std::vector<Primitive> find_primitives(const MatrixFView& features, const NeighborGraph& graph,
