@@ -1,14 +1,19 @@
-// Alternating clusters joined (join_alternations of primitive_clusters.h).
+#include "kinetome/models/alternations.h"
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
-#include "kinetome/models/primitive_clusters.h"
+#include "kinetome/models/take_segmentation.h"
 
 namespace kinetome {
 namespace {
+
+bool adjoin(const Primitive& first, const Primitive& second) {
+    return first.activity == second.activity && first.frames.end == second.frames.first;
+}
 
 struct Pair {
     int32_t first = 0, second = 0;
@@ -33,14 +38,14 @@ struct Successions {
     std::map<Pair, PairCount> pairs;
     std::map<int32_t, int64_t> followed, preceded;  ///< how many primitives of a cluster are
 
-    explicit Successions(const PrimitiveClusters& clusters) {
+    explicit Successions(const TakePrimitives& take) {
         int64_t chain = 0;
-        for (size_t i = 0; i + 1 < clusters.primitives.size(); ++i) {
-            if (!adjoin(clusters.primitives[i], clusters.primitives[i + 1])) {
+        for (size_t i = 0; i + 1 < take.primitives.size(); ++i) {
+            if (!adjoin(take.primitives[i], take.primitives[i + 1])) {
                 ++chain;
                 continue;
             }
-            const Pair pair{clusters.clusters[i], clusters.clusters[i + 1]};
+            const Pair pair{take.clusters[i], take.clusters[i + 1]};
             pairs[pair].occur_in(chain);
             ++followed[pair.first];
             ++preceded[pair.second];
@@ -49,9 +54,9 @@ struct Successions {
 };
 
 /// The pairs to join, no cluster in two of them: the second of each by its first.
-std::map<int32_t, int32_t> pairs_to_join(const PrimitiveClusters& clusters,
+std::map<int32_t, int32_t> pairs_to_join(const TakePrimitives& take,
                                          const AlternationOptions& options) {
-    const Successions successions(clusters);
+    const Successions successions(take);
     std::vector<std::pair<int64_t, Pair>> candidates;
     for (const auto& [pair, count] : successions.pairs) {
         const int64_t sides =
@@ -72,16 +77,15 @@ std::map<int32_t, int32_t> pairs_to_join(const PrimitiveClusters& clusters,
     return second_of;
 }
 
-std::vector<CorpusPrimitive> joined(const PrimitiveClusters& clusters,
-                                    const std::map<int32_t, int32_t>& second_of) {
-    std::vector<CorpusPrimitive> primitives;
-    for (size_t i = 0; i < clusters.primitives.size(); ++i) {
-        CorpusPrimitive primitive = clusters.primitives[i];
-        const auto pair = second_of.find(clusters.clusters[i]);
-        if (pair != second_of.end() && i + 1 < clusters.primitives.size() &&
-            clusters.clusters[i + 1] == pair->second &&
-            adjoin(primitive, clusters.primitives[i + 1])) {
-            primitive.rows.end = clusters.primitives[++i].rows.end;
+std::vector<Primitive> joined(const TakePrimitives& take,
+                              const std::map<int32_t, int32_t>& second_of) {
+    std::vector<Primitive> primitives;
+    for (size_t i = 0; i < take.clusters.size(); ++i) {
+        Primitive primitive = take.primitives[i];
+        const auto pair = second_of.find(take.clusters[i]);
+        if (pair != second_of.end() && i + 1 < take.clusters.size() &&
+            take.clusters[i + 1] == pair->second && adjoin(primitive, take.primitives[i + 1])) {
+            primitive.frames.end = take.primitives[++i].frames.end;
         }
         primitives.push_back(primitive);
     }
@@ -90,17 +94,17 @@ std::vector<CorpusPrimitive> joined(const PrimitiveClusters& clusters,
 
 }  // namespace
 
-PrimitiveClusters join_alternations(const MatrixFView& features, PrimitiveClusters clusters,
-                                    const AlternationOptions& alternation,
-                                    const PrimitiveClusterOptions& options, int threads) {
-    if (clusters.primitives.size() != clusters.clusters.size()) {
+TakePrimitives join_alternations(const MatrixFView& features, TakePrimitives take,
+                                 const AlternationOptions& alternation,
+                                 const PrimitiveClusterOptions& options) {
+    if (take.primitives.size() != take.clusters.size()) {
         throw std::invalid_argument("each primitive must have one cluster");
     }
     for (;;) {
-        const auto second_of = pairs_to_join(clusters, alternation);
-        if (second_of.empty()) return clusters;
-        clusters.primitives = joined(clusters, second_of);
-        clusters.clusters = cluster_primitives(features, clusters.primitives, options, threads);
+        const auto second_of = pairs_to_join(take, alternation);
+        if (second_of.empty()) return take;
+        take.primitives = joined(take, second_of);
+        take.clusters = cluster_take(features, take.primitives, options);
     }
 }
 

@@ -275,6 +275,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
         number("primitive-threshold", "segments", o.primitive_clusters.threshold,
                "mean distance along the path that warps one primitive to another of its cluster, "
                "cm, at most"),
+        choice("join-alternations", "primitives", o.alternations.joined, off_and_on,
+               "whether two primitives of a take that always follow each other, as a step of one "
+               "foot a step of the other, become one"),
         number("share-across", "segments", o.primitive_clusters.share_across,
                "of the pairs between clusters of different takes: so many must be alike for the "
                "clusters to be one"),

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "kinetome/models/adapted_radius.h"
+#include "kinetome/models/alternations.h"
 #include "kinetome/models/take_segmentation.h"
 #include "kinetome/stages/graph_takes.h"
 #include "kinetome/stages/segment_file.h"
@@ -11,14 +12,8 @@
 #include "kinetome/stages/stage.h"
 
 namespace kinetome {
-namespace {
-
-struct TakePrimitives {
-    std::vector<Primitive> primitives;
-    std::vector<int32_t> clusters;
-};
-
-void pack(Packer& out, const TakePrimitives& take) {
+// Found where for_takes looks for them: beside the type.
+static void pack(Packer& out, const TakePrimitives& take) {
     out.put(static_cast<uint64_t>(take.primitives.size()));
     for (size_t p = 0; p < take.primitives.size(); ++p) {
         const Primitive& primitive = take.primitives[p];
@@ -27,7 +22,7 @@ void pack(Packer& out, const TakePrimitives& take) {
     }
 }
 
-void unpack(Unpacker& in, TakePrimitives& take) {
+static void unpack(Unpacker& in, TakePrimitives& take) {
     take.primitives.resize(in.get<uint64_t>());
     take.clusters.resize(take.primitives.size());
     for (size_t p = 0; p < take.primitives.size(); ++p) {
@@ -38,6 +33,8 @@ void unpack(Unpacker& in, TakePrimitives& take) {
         take.clusters[p] = in.get<int32_t>();
     }
 }
+
+namespace {
 
 /// Clusters across the corpus, of the primitives of all takes one after another.
 std::vector<int32_t> corpus_clusters(const StageContext& context, const GraphTakes& takes,
@@ -82,7 +79,9 @@ StageResult make_primitives(const StageContext& context, const StageTask& task) 
         result.primitives = find_primitives(take.features, take.graph, segments.at(place.clip.name),
                                             options.primitives);
         result.clusters = cluster_take(take.features, result.primitives, options.clusters);
-        return result;
+        if (!context.options.alternations.joined) return result;
+        return join_alternations(take.features, std::move(result), context.options.alternations,
+                                 options.clusters);
     });
     StageResult result;
     if (!context.is_root()) return result;

@@ -143,7 +143,6 @@ TEST_CASE("primitives of one frame are joined by their distance") {
 
 TEST_CASE("no primitives have no clusters") {
     CHECK(cluster_primitives(MatrixF(0, 45), {}, {}, 2).empty());
-    CHECK(join_alternations(MatrixF(0, 45), {}, {}, {}, 2).primitives.empty());
 }
 
 TEST_CASE("primitives that cannot be compared are refused, with their rows") {
@@ -175,45 +174,4 @@ TEST_CASE("clusters of generated cycles hold one activity each") {
     CAPTURE(clusters.size(), labels.size());
     CHECK(double(agreed) >= 0.99 * double(clusters.size()));
     CHECK(3 * labels.size() < clusters.size());
-}
-
-TEST_CASE("halves that always follow each other become one primitive") {
-    // Steps left and right: seven in one clip, four in another that begins with the right.
-    MatrixF features(110, 2);
-    for (int64_t i = 0; i < 110; ++i) {
-        const double phase = 3.1416 * double(i % 10) / 10;
-        features.row(i) << float(i / 10 % 2 == 0 ? 300 * std::sin(phase) : 0),
-            float(i / 10 % 2 == 1 ? 300 * std::sin(phase) : 0);
-    }
-    PrimitiveClusters steps;
-    for (int64_t step = 0; step < 11; ++step) {
-        steps.primitives.push_back({step < 7 ? 0 : 1, {10 * step, 10 * step + 10}});
-    }
-    steps.clusters = cluster_primitives(features, steps.primitives, {}, 1);
-    REQUIRE(steps.clusters == std::vector<int32_t>{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0});
-
-    const PrimitiveClusters joined = join_alternations(features, steps, {}, {}, 1);
-    CHECK(joined.primitives == std::vector<CorpusPrimitive>{{0, {0, 10}},
-                                                            {0, {10, 30}},
-                                                            {0, {30, 50}},
-                                                            {0, {50, 70}},
-                                                            {1, {70, 90}},
-                                                            {1, {90, 110}}});
-    CHECK(joined.clusters == std::vector<int32_t>{0, 1, 1, 1, 1, 1});
-}
-
-TEST_CASE("movements that follow each other now and then stay apart") {
-    const MatrixF features = MatrixF::Zero(80, 2);
-    PrimitiveClusters clusters;
-    for (int64_t p = 0; p < 8; ++p) clusters.primitives.push_back({0, {10 * p, 10 * p + 10}});
-    const auto sizes_after = [&](const std::vector<int32_t>& order) {
-        clusters.clusters = order;
-        return join_alternations(features, clusters, {}, {}, 1).primitives.size();
-    };
-    CHECK(sizes_after({0, 0, 0, 0, 0, 0, 0, 0}) == 8);  // one movement
-    CHECK(sizes_after({0, 0, 0, 1, 1, 1, 2, 2}) == 8);  // one after another
-    CHECK(sizes_after({0, 1, 0, 2, 0, 1, 0, 2}) == 8);  // no two always together
-    CHECK(sizes_after({0, 1, 2, 3, 4, 5, 6, 7}) == 8);  // never again
-    clusters.clusters.pop_back();
-    CHECK_THROWS_AS(join_alternations(features, clusters, {}, {}, 1), std::invalid_argument);
 }

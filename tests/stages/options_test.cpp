@@ -89,6 +89,7 @@ TEST_CASE("values that make no sense are refused before a run begins") {
                              "joints = ''",
                              "corpus-graph = 'maybe'",
                              "corpus-exclusion = -1",
+                             "join-alternations = 'sometimes'",
                              "principal-tolerance = 0",
                              "principal-starts = 0",
                              "leaf-dimension = 0",

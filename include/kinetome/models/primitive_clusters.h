@@ -36,23 +36,4 @@ std::vector<int32_t> cluster_primitives(const MatrixFView& features,
                                         std::span<const CorpusPrimitive> primitives,
                                         const PrimitiveClusterOptions& options, int threads);
 
-struct PrimitiveClusters {
-    std::vector<CorpusPrimitive> primitives;
-    std::vector<int32_t> clusters;  ///< of each primitive
-};
-
-struct AlternationOptions {
-    double share = 0.9;         ///< of the primitives of both clusters that must be side by side
-    int64_t least_repeats = 2;  ///< of the pair, one after another without a gap
-};
-
-/// Primitives that were cut too short, joined and clustered again (S3 §7): where those of one
-/// cluster are always followed by those of another, as one half of a double step by the other, the
-/// two are one movement. Primitives that adjoin no other do not count. Of the ways to pair clusters
-/// those that join more primitives are taken, then those whose first cluster is the lower; what is
-/// left over at the ends of an alternation stays as it is. Repeated until nothing is joined.
-PrimitiveClusters join_alternations(const MatrixFView& features, PrimitiveClusters clusters,
-                                    const AlternationOptions& alternation,
-                                    const PrimitiveClusterOptions& options, int threads);
-
 }  // namespace kinetome

@@ -14,10 +14,10 @@
 #include "kinetome/formats/asf_amc.h"
 #include "kinetome/math/knn.h"
 #include "kinetome/models/activity.h"
+#include "kinetome/models/alternations.h"
 #include "kinetome/models/hierarchy_growth.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/primitive.h"
-#include "kinetome/models/primitive_clusters.h"
 #include "kinetome/models/principal_markers.h"
 #include "kinetome/models/subject_partition.h"
 
@@ -74,6 +74,7 @@ struct ReindexOptions {
     ActivityOptions activities;
     PrimitiveOptions primitives;
     PrimitiveClusterOptions primitive_clusters;
+    AlternationOptions alternations;
 };
 
 /// Every option at the paper's value, where the default departs from it (docs/methods.md).
