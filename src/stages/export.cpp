@@ -127,12 +127,9 @@ Table letter_table(const Generation& generation) {
 Table segment_table(const Generation& generation) {
     Table table{{"clip", "first", "end", "kind", "activity_cluster"}, {}};
     const ArtifactReader file = generation.open("segments.h5");
-    const double rate = effector_rate_of(file);
-    for (const SegmentedClip& clip : read_segments(file)) {
+    for (const SegmentedClip& clip : in_source(read_segments(file), effector_rate_of(file))) {
         for (const Segment& segment : clip.segments) {
-            table.rows.push_back({clip.clip.name,
-                                  source_boundary(clip.clip, segment.frames.first, rate),
-                                  source_boundary(clip.clip, segment.frames.end, rate),
+            table.rows.push_back({clip.clip.name, segment.frames.first, segment.frames.end,
                                   segment.kind == SegmentKind::activity ? "activity" : "transition",
                                   int64_t{segment.cluster}});
         }
@@ -152,14 +149,13 @@ Table primitive_table(const OpenStore& open, const std::filesystem::path& labels
     for (const PrimitiveClip& clip : read_primitives(file)) {
         while (activities->clip.name != clip.clip.name) ++activities;
         for (const StoredPrimitive& stored : clip.primitives) {
-            const Primitive& primitive = stored.primitive;
+            const ClipPrimitive& primitive = *next++;
+            if (primitive.first == primitive.end) continue;  // as in_source leaves it out
             const Segment& activity =
-                activities->segments.at(static_cast<size_t>(primitive.activity));
-            table.rows.push_back({clip.clip.name,
-                                  source_boundary(clip.clip, primitive.frames.first, rate),
-                                  source_boundary(clip.clip, primitive.frames.end, rate),
+                activities->segments.at(static_cast<size_t>(stored.primitive.activity));
+            table.rows.push_back({clip.clip.name, primitive.first, primitive.end,
                                   source_boundary(clip.clip, activity.frames.first, rate),
-                                  int64_t{stored.cluster}, (next++)->label});
+                                  int64_t{stored.cluster}, primitive.label});
         }
     }
     return table;

@@ -55,6 +55,11 @@ std::vector<CutClip> read_clips(const ArtifactReader& file) {
     return clips;
 }
 
+void move_to_source(RowRange& frames, const CutClip& clip, double effector_rate) {
+    frames = {source_boundary(clip, frames.first, effector_rate),
+              source_boundary(clip, frames.end, effector_rate)};
+}
+
 /// Where rows with a clip id go.
 template <class Clip>
 std::map<int64_t, Clip*> by_id(std::vector<Clip>& clips) {
@@ -172,6 +177,26 @@ double effector_rate_of(const ArtifactReader& file) {
 int64_t source_boundary(const CutClip& clip, int64_t frame, double effector_rate) {
     if (frame >= clip.frames) return clip.source_frames;
     return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, effector_rate)));
+}
+
+std::vector<SegmentedClip> in_source(std::vector<SegmentedClip> clips, double effector_rate) {
+    for (SegmentedClip& clip : clips) {
+        for (Segment& segment : clip.segments)
+            move_to_source(segment.frames, clip.clip, effector_rate);
+        std::erase_if(clip.segments, [](const Segment& one) { return one.frames.size() == 0; });
+    }
+    return clips;
+}
+
+std::vector<PrimitiveClip> in_source(std::vector<PrimitiveClip> clips, double effector_rate) {
+    for (PrimitiveClip& clip : clips) {
+        for (StoredPrimitive& stored : clip.primitives) {
+            move_to_source(stored.primitive.frames, clip.clip, effector_rate);
+        }
+        std::erase_if(clip.primitives,
+                      [](const StoredPrimitive& one) { return one.primitive.frames.size() == 0; });
+    }
+    return clips;
 }
 
 }  // namespace kinetome

@@ -17,11 +17,6 @@
 namespace kinetome {
 namespace {
 
-RowRange in_source(const CutClip& clip, const RowRange& frames, double effector_rate) {
-    return {source_boundary(clip, frames.first, effector_rate),
-            source_boundary(clip, frames.end, effector_rate)};
-}
-
 /// Calls take(place, effectors, effector rate) for each clip that has effectors, shard by shard.
 template <class Take>
 void for_each_effectors(const Generation& generation, const Take& take) {
@@ -64,29 +59,21 @@ struct ClassRows {
 
 std::vector<SegmentedTake> stored_segments(const Generation& generation) {
     const ArtifactReader file = generation.open("segments.h5");
-    const double rate = effector_rate_of(file);
     std::vector<SegmentedTake> takes;
-    for (const SegmentedClip& clip : read_segments(file)) {
-        SegmentedTake take{clip.clip.name, clip.clip.source_frames, clip.clip.source_rate, {}};
-        for (Segment segment : clip.segments) {
-            segment.frames = in_source(clip.clip, segment.frames, rate);
-            if (segment.frames.size() > 0) take.segments.push_back(segment);
-        }
-        takes.push_back(std::move(take));
+    for (SegmentedClip& clip : in_source(read_segments(file), effector_rate_of(file))) {
+        takes.push_back({clip.clip.name, clip.clip.source_frames, clip.clip.source_rate,
+                         std::move(clip.segments)});
     }
     return takes;
 }
 
 std::vector<PrimitivesOfTake> stored_primitives(const Generation& generation) {
     const ArtifactReader file = generation.open("primitives.h5");
-    const double rate = effector_rate_of(file);
     std::vector<PrimitivesOfTake> takes;
-    for (const PrimitiveClip& clip : read_primitives(file)) {
+    for (const PrimitiveClip& clip : in_source(read_primitives(file), effector_rate_of(file))) {
         PrimitivesOfTake take{clip.clip.name, {}, {}};
         for (const StoredPrimitive& stored : clip.primitives) {
-            const RowRange frames = in_source(clip.clip, stored.primitive.frames, rate);
-            if (frames.size() == 0) continue;
-            take.primitives.push_back(frames);
+            take.primitives.push_back(stored.primitive.frames);
             take.clusters.push_back(stored.cluster);
         }
         takes.push_back(std::move(take));

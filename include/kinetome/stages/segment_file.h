@@ -49,4 +49,10 @@ double effector_rate_of(const ArtifactReader& file);
 /// A boundary at the effector rate as a frame of the source: the first that lies at it or after it.
 int64_t source_boundary(const CutClip& clip, int64_t frame, double effector_rate);
 
+/// The same clips with frames of the source, as exports and evaluations list them: without segments
+/// and primitives that are so short that no frame of the source lies in them. Primitives go on
+/// naming their activity by its number in segments.h5.
+std::vector<SegmentedClip> in_source(std::vector<SegmentedClip> clips, double effector_rate);
+std::vector<PrimitiveClip> in_source(std::vector<PrimitiveClip> clips, double effector_rate);
+
 }  // namespace kinetome
