@@ -14,6 +14,17 @@ MatrixF every(const MatrixFView& rows, int64_t stride) {
     return kept;
 }
 
+/// From one of every `stride` rows of the query to the next, along a motion of which no row is left
+/// out: at most twice as fast or slow, evenly first.
+std::vector<WarpStep> steps_between(int64_t stride) {
+    if (stride == 1) return slope_limited_steps();
+    std::vector<WarpStep> steps{{1, static_cast<int32_t>(stride)}};
+    for (int64_t rows = (stride + 1) / 2; rows <= 2 * stride; ++rows) {
+        if (rows != stride) steps.push_back({1, static_cast<int32_t>(rows)});
+    }
+    return steps;
+}
+
 /// Where around a match the query fits best; nothing where it does not fit at all.
 std::vector<IndexedMatch> moved(const MatrixF& query, int64_t query_frames,
                                 const IndexedMatch& match, int64_t clip_frames,
@@ -21,11 +32,13 @@ std::vector<IndexedMatch> moved(const MatrixF& query, int64_t query_frames,
     const auto margin = static_cast<int64_t>(options.margin * double(query_frames));
     const RowRange frames{std::max<int64_t>(match.match.frames.first - margin, 0),
                           std::min(match.match.frames.end + margin, clip_frames)};
-    const auto paths = warp_matches(query, every(read(match.clip, frames), options.stride), {});
+    MatchOptions how;
+    how.steps = steps_between(options.stride);
+    const auto paths = warp_matches(query, read(match.clip, frames), how);
     const auto nearest = std::ranges::min_element(paths, {}, &WarpPath::mean);
     if (nearest == paths.end()) return {};
-    const int64_t first = frames.first + nearest->cells.front().second * options.stride;
-    const int64_t end = frames.first + (nearest->cells.back().second + 1) * options.stride;
+    const int64_t first = frames.first + nearest->cells.front().second;
+    const int64_t end = frames.first + nearest->cells.back().second + options.stride;
     return {{match.clip, {{first, std::min(end, clip_frames)}, nearest->mean}}};
 }
 

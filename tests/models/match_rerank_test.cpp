@@ -39,7 +39,7 @@ TEST_CASE("the motion that is the same comes first, where it is") {
     const Clips clips;
     const MatrixF query = clips.rows[1].middleRows(400, 120);
     // Found with the other one nearer, and some frames off.
-    const auto found = clips.rerank(query, {{0, {{400, 520}, 1}}, {1, {{382, 510}, 2}}});
+    const auto found = clips.rerank(query, {{0, {{400, 520}, 1}}, {1, {{381, 510}, 2}}});
     REQUIRE(found.size() == 2);
     CHECK(found[0].clip == 1);
     CHECK(found[0].match == SignatureMatch{{400, 520}, 0});
@@ -49,7 +49,7 @@ TEST_CASE("the motion that is the same comes first, where it is") {
 TEST_CASE("two matches that move to one place become one") {
     const Clips clips;
     const MatrixF query = clips.rows[0].middleRows(200, 120);
-    const auto found = clips.rerank(query, {{0, {{182, 310}, 1}}, {0, {{210, 330}, 2}}}, 2);
+    const auto found = clips.rerank(query, {{0, {{183, 310}, 1}}, {0, {{211, 330}, 2}}}, 2);
     REQUIRE(found.size() == 1);
     CHECK(found[0].match == SignatureMatch{{200, 320}, 0});
 }

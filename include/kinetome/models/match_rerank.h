@@ -11,7 +11,7 @@
 namespace kinetome {
 
 struct RerankOptions {
-    int64_t stride = 4;    ///< every so many frames one is compared
+    int64_t stride = 4;    ///< every so many frames of the query one is compared
     double margin = 0.25;  ///< share of the query by which a match may move at either end
     double overlap = 0.3;  ///< as in SignatureMatchOptions
 };
@@ -20,7 +20,7 @@ struct RerankOptions {
 using ReadFeatures = std::function<MatrixF(int32_t clip, const RowRange& frames)>;
 
 /// The k nearest of the matches by dynamic time warping of features (slope_limited_steps,
-/// WarpWeight::first), each moved, by whole strides, to where the query (n × d) fits best.
+/// WarpWeight::first), each moved to where the query (n × d) fits best.
 /// Distances are those of the features, mean along the path. The same for any number of threads;
 /// `read` is called from several.
 std::vector<IndexedMatch> rerank_matches(const MatrixFView& query,
