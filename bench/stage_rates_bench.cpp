@@ -266,6 +266,7 @@ enum StageNumber : size_t {
     pose_clusters_stage,
     strings_stage,
     pose_hierarchy_stage,
+    signatures_stage,
     neighbors_stage,
     segments_stage,
     primitives_stage,
@@ -307,6 +308,7 @@ Rates measure(const Options& options) {
     rates.features =
         shard_rates(features_stage, frames * values_of_features(shape, features, 120.0));
     rates.pose_hierarchy = shard_rates(pose_hierarchy_stage, poses_by_levels(opened.generation));
+    rates.signatures = shard_rates(signatures_stage, frames);
     rates.neighbors =
         shard_rates(neighbors_stage, 2 * size_of_graphs(opened.generation, "neighbors").edges);
     const GraphSize searched = size_of_graphs(opened.generation, "corpus_neighbors");

@@ -52,9 +52,10 @@ Command export_command() {
         [](CLI::App& app) -> Run {
             auto flags = std::make_shared<ExportFlags>();
             app.add_option("STORE", flags->store, "store to read")->required();
-            app.add_option(
-                   "WHAT", flags->what,
-                   "clips, letters, neighbors, segments, primitives, primitive-graph or timeline")
+            app.add_option("WHAT", flags->what,
+                           "clips, letters, neighbors, segments, primitives, primitive-graph, "
+                           "signatures or "
+                           "timeline")
                 ->required();
             app.add_option(
                 "--format", flags->format,

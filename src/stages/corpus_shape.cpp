@@ -210,7 +210,8 @@ std::vector<HierarchyShape> hierarchy_shapes(const CorpusShape& corpus,
         const PieceLayout layout = layout_pieces(extents[i]);
         const int64_t joints = corpus.classes[i].joints;
         if (layout.rows() == 0) continue;
-        shapes.push_back({static_cast<int64_t>(layout.pieces.size()),
+        shapes.push_back({static_cast<int64_t>(extents[i].size()),
+                          static_cast<int64_t>(layout.pieces.size()),
                           {layout.rows(), 3 * joints, 3 * std::min(principal_markers, joints)}});
     }
     return shapes;

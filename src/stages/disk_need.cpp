@@ -11,6 +11,7 @@
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/base/resources.h"
+#include "kinetome/models/signature_index.h"
 
 namespace kinetome {
 namespace {
@@ -112,6 +113,27 @@ uint64_t pose_hierarchy_bytes(const HierarchyShape& shape, const PoseHierarchyOp
         .rows(leaves, {size.columns * number, size.columns * options.dimension * number, number,
                        size.principal * (size.columns - size.principal) * number})
         .bytes();
+}
+
+/// write_signatures.
+uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& options) {
+    constexpr int64_t typical_run_frames = 12;
+    const SignatureIndexOptions index_options;
+    uint64_t bytes = 0;
+    for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+        const int64_t leaves = expected_leaves(shape.size.rows, options.pose_hierarchy);
+        const int64_t runs = shape.size.rows / typical_run_frames + 1;
+        // Those within reach are a quarter of the leaves of few takes.
+        const int64_t near = leaves * std::min<int64_t>(leaves / 4, index_options.near_leaves);
+        bytes += Group()
+                     .rows(1, {number, number})
+                     .rows(shape.clips, {number, name, number, number, number, number})
+                     .rows(runs, {index, index, index, index})
+                     .rows(leaves, {shape.size.columns * value, number, number})
+                     .rows(near, {index, value})
+                     .bytes();
+    }
+    return bytes;
 }
 
 /// write_segments and write_primitives.
@@ -247,6 +269,7 @@ uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const 
                         const ReindexOptions& options) {
     if (stage_named(stage).sharded) return shard_bytes(stage, cut, corpus, options);
     if (goes_through_takes(stage)) return take_cuts_bytes(stage, corpus, options);
+    if (stage == "signatures") return signatures_bytes(corpus, options);
     uint64_t bytes = 0;
     if (stage == "pose_hierarchy") {
         for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {

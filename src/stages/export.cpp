@@ -11,6 +11,7 @@
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
 #include "kinetome/stages/segment_file.h"
+#include "kinetome/stages/signature_query.h"
 #include "kinetome/stages/stored_graph.h"
 #include "kinetome/store/json_text.h"
 #include "kinetome/store/neighbor_store.h"
@@ -198,9 +199,10 @@ Table export_table(const OpenStore& open, std::string_view what,
     if (what == "neighbors") return neighbor_table(generation);
     if (what == "segments") return segment_table(generation);
     if (what == "primitives") return primitive_table(open, labels);
+    if (what == "signatures") return signature_table(generation);
     throw UsageError(fmt::format(
         "cannot export '{}': there are clips, letters, neighbors, segments, primitives, "
-        "primitive-graph, timeline",
+        "primitive-graph, signatures, timeline",
         what));
 }
 

@@ -6,6 +6,7 @@
 #include "clip_pipeline.h"
 #include "kinetome/models/neighbor_graph.h"
 #include "kinetome/models/pose_clusters.h"
+#include "kinetome/models/signature_index.h"
 #include "kinetome/stages/graph_rows.h"
 #include "kinetome/stages/stage.h"
 #include "kinetome/stages/work_share.h"
@@ -122,6 +123,24 @@ uint64_t hierarchy_bytes(const CorpusShape& corpus, const ReindexOptions& option
     return largest + results;
 }
 
+/// Markers of clips on their way, a model, and the index of every class until the file is written.
+uint64_t signature_bytes(const CorpusShape& corpus, const ReindexOptions& options,
+                         const Resources& resources) {
+    constexpr int64_t bytes_per_run = 64, typical_run_frames = 12, bytes_per_near_leaf = 16;
+    const SignatureIndexOptions index_options;
+    uint64_t model = 0, indices = 0;
+    for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
+        const int64_t leaves = expected_leaves(shape.size.rows, options.pose_hierarchy);
+        model = std::max(model, 2 * static_cast<uint64_t>(leaves) *
+                                    leaf_bytes(shape.size, options.pose_hierarchy));
+        indices +=
+            static_cast<uint64_t>(shape.size.rows / typical_run_frames * bytes_per_run +
+                                  leaves * (index_options.near_leaves * bytes_per_near_leaf +
+                                            2 * shape.size.columns * int64_t{sizeof(float)}));
+    }
+    return model + indices + pipeline_bytes("signatures", corpus, options, resources);
+}
+
 }  // namespace
 
 uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
@@ -137,6 +156,7 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
         const uint64_t takes = at_rest + pipeline_bytes(stage, corpus, options, resources);
         return stage == "primitives" ? takes + graph_feature_bytes(corpus, options) : takes;
     }
+    if (stage == "signatures") return at_rest + signature_bytes(corpus, options, resources);
     if (stage == "pose_hierarchy") {
         return std::min(at_rest + hierarchy_bytes(corpus, options, resources, ranks),
                         std::max(resources.memory_bytes, at_rest));

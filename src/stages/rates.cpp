@@ -86,8 +86,8 @@ class RatesFile {
 
     Rates read() const {
         require_known(table_, {"machine", "version", "threads", "frames", "features", "poses",
-                               "pose_hierarchy", "neighbors", "corpus_neighbors", "search",
-                               "segments", "primitives"});
+                               "pose_hierarchy", "signatures", "neighbors", "corpus_neighbors",
+                               "search", "segments", "primitives"});
         Rates rates;
         rates.machine = table_["machine"].value_or(std::string());
         rates.version = table_["version"].value_or(std::string());
@@ -97,6 +97,7 @@ class RatesFile {
         rates.poses = section<PoseRates>(table_, "poses", pose_fields, more_pose_keys);
         rates.poses.by_clusters = mixtures();
         rates.pose_hierarchy = section<ShardRates>(table_, "pose_hierarchy", shard_fields);
+        rates.signatures = section<ShardRates>(table_, "signatures", shard_fields);
         rates.neighbors = section<ShardRates>(table_, "neighbors", shard_fields);
         rates.corpus_neighbors = section<ShardRates>(table_, "corpus_neighbors", shard_fields);
         rates.search = section<SearchRates>(table_, "search", search_fields);
@@ -217,6 +218,7 @@ std::string write_rates(const Rates& rates) {
     text += section_text("[frames]", rates.frames, shard_fields);
     text += section_text("[features]", rates.features, shard_fields);
     text += section_text("[pose_hierarchy]", rates.pose_hierarchy, shard_fields);
+    text += section_text("[signatures]", rates.signatures, shard_fields);
     text += section_text("[neighbors]", rates.neighbors, shard_fields);
     text += section_text("[corpus_neighbors]", rates.corpus_neighbors, shard_fields);
     text += section_text("[search]", rates.search, search_fields);

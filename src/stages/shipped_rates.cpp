@@ -27,6 +27,11 @@ seconds_per_file = 0.005
 nanoseconds_per_value = 1800.0
 serial_share = 0.1
 
+[signatures]
+seconds_per_file = 0.004
+nanoseconds_per_value = 2000.0
+serial_share = 0.3
+
 [neighbors]
 seconds_per_file = 0.003
 nanoseconds_per_value = 60.0

@@ -96,18 +96,18 @@ const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
     if (stage == "frames") return rates.frames;
     if (stage == "segments") return rates.segments;
     if (stage == "primitives") return rates.primitives;
+    if (stage == "signatures") return rates.signatures;
     if (stage == "features") return rates.features;
     return stage == "neighbors" ? rates.neighbors : rates.corpus_neighbors;
 }
 
-/// A stage that makes one file of what ranks find out take by take.
-StageLoad load_of_takes(const ShardRates& each, const CorpusShape& corpus,
-                        const ReindexOptions& options) {
+/// A stage that makes one file of what ranks find out take by take, at `rate` frames a second.
+StageLoad load_of_takes(const ShardRates& each, const CorpusShape& corpus, double rate) {
     StageLoad load;
     load.serial_share = each.serial_share;
     for (const ClipShape& clip : corpus.clips) {
         LoadItem item;
-        item.amount = clip.frames_at(options.features.effector_rate);
+        item.amount = clip.frames_at(rate);
         item.seconds = static_cast<double>(item.amount) * each.nanoseconds_per_value * nanosecond;
         load.items.push_back(item);
     }
@@ -171,7 +171,10 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
         return load;
     }
     if (goes_through_takes(stage)) {
-        return load_of_takes(shard_rates(stage, rates), corpus, options);
+        return load_of_takes(shard_rates(stage, rates), corpus, options.features.effector_rate);
+    }
+    if (stage == "signatures") {
+        return load_of_takes(rates.signatures, corpus, options.features.pose_rate);
     }
     load.shares_items = true;
     if (stage == "pose_hierarchy") {

@@ -182,8 +182,9 @@ TEST_CASE("info tells what a store holds", "[commands]") {
     CHECK(contains(output, "generation  " + *store.current() + "\n"));
     CHECK(contains(output, "2 indexed, 1 quarantined, 300 frames"));
     CHECK(contains(output, corpus.path().string()));
-    for (const std::string stage : {"frames", "features", "pose_clusters", "motion_strings",
-                                    "pose_hierarchy", "neighbors", "segments", "primitives"}) {
+    for (const std::string stage :
+         {"frames", "features", "pose_clusters", "motion_strings", "pose_hierarchy", "signatures",
+          "neighbors", "segments", "primitives"}) {
         CHECK(contains(output, "\n" + stage + " "));
     }
 }

@@ -58,6 +58,7 @@ Names from_stage_on(const StoreOnDisk& store, const std::string& stage) {
         {"features", {"pose_clusters", "pose_hierarchy", "neighbors"}},
         {"neighbors", {"segments"}},
         {"segments", {"primitives"}},
+        {"pose_hierarchy", {"signatures"}},
         {"pose_clusters", {"motion_strings"}}};
     Names names = store.artifacts(stage);
     const auto next = made_of.find(stage);
@@ -105,7 +106,7 @@ TEST_CASE("a new take alters one shard and what is made of all of them", "[incre
     CHECK(beginning_with(altered, "frames-").size() == 1);
     CHECK(beginning_with(altered, "features-").size() == 1);
     CHECK(beginning_with(altered, "neighbors-").size() == 1);
-    CHECK(altered.size() == 8);
+    CHECK(altered.size() == 9);
     CHECK(names_of(after) == names_of(before));
     const RunLog log(added.errors);
     CHECK(log.names_made() == altered);
@@ -212,8 +213,8 @@ TEST_CASE("the option --only makes the stages it names, and says what is left ou
 
     const RunLog rest(require_program(reindex(corpus, store.path())).errors);
     Names left = store.artifacts("neighbors-");
-    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "pose_hierarchy.h5", "segments.h5",
-                     "primitives.h5"});
+    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "pose_hierarchy.h5", "signatures.h5",
+                     "segments.h5", "primitives.h5"});
     CHECK(rest.names_made() == left);
     require_program(reindex(corpus, fresh.path()));
     CHECK(store.digests() == fresh.digests());

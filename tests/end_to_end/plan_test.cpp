@@ -239,6 +239,10 @@ serial_share = 0
 seconds_per_file = 0
 nanoseconds_per_value = 0
 serial_share = 0
+[signatures]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
 [corpus_neighbors]
 seconds_per_file = 0
 nanoseconds_per_value = 0

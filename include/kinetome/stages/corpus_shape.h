@@ -87,6 +87,7 @@ struct PartitionShape {
 
 /// Poses of one class, whose hierarchy will be grown.
 struct HierarchyShape {
+    int64_t clips = 0;
     int64_t pieces = 0;  ///< that ranks can share (base/pieces.h)
     HierarchySize size;  ///< with as many principal columns as real motion has
 };

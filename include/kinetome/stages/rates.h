@@ -51,6 +51,7 @@ struct Rates {
     ShardRates features;
     PoseRates poses;
     ShardRates pose_hierarchy;    ///< of one file; a value is a pose at one level
+    ShardRates signatures;        ///< of one file; a value is a pose
     ShardRates neighbors;         ///< a neighbour is two values
     ShardRates corpus_neighbors;  ///< a neighbour is three values, see crowding()
     SearchRates search;

@@ -93,6 +93,7 @@ StageResult make_pose_hierarchy(const StageContext& context, const StageTask& ta
 StageResult make_neighbors(const StageContext& context, const StageTask& task);
 StageResult make_corpus_neighbors(const StageContext& context, const StageTask& task);
 StageResult make_segments(const StageContext& context, const StageTask& task);
+StageResult make_signatures(const StageContext& context, const StageTask& task);
 StageResult make_primitives(const StageContext& context, const StageTask& task);
 
 }  // namespace kinetome

@@ -1,0 +1,187 @@
+#include "kinetome/stages/signature_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/formats/resample.h"
+#include "kinetome/store/catalog.h"
+
+namespace kinetome {
+namespace {
+
+const std::string rate_path = "/pose_rate";
+
+/// Datasets of one class.
+class GroupWriter {
+  public:
+    GroupWriter(ArtifactWriter& file, std::string group) : file_(file), group_(std::move(group)) {}
+
+    template <class T>
+    void write(const char* name, const char* units, const char* description, const char* source,
+               const std::vector<T>& values) const {
+        file_.write<T>(spec(name, element_type_of<T>(), units, description, source), values);
+    }
+    void write_texts(const char* name, const char* description,
+                     const std::vector<std::string>& values) const {
+        file_.write_texts(spec(name, ElementType::text, "1", description, ""), values);
+    }
+    void write_rows(const char* name, const char* units, const char* description,
+                    const char* source, const MatrixF& rows) const {
+        DatasetSpec with_shape = spec(name, ElementType::float32, units, description, source);
+        with_shape.row_shape = {rows.cols()};
+        file_.create(with_shape);
+        file_.append(with_shape.path, rows);
+    }
+
+  private:
+    DatasetSpec spec(const char* name, ElementType type, const char* units, const char* description,
+                     const char* source) const {
+        return {group_ + "/" + name, type, {}, units, description, source, "", {}};
+    }
+
+    ArtifactWriter& file_;
+    std::string group_;
+};
+
+template <class Value>
+std::vector<int64_t> lengths_of(const ValueLists<Value>& lists) {
+    std::vector<int64_t> lengths;
+    for (int64_t i = 0; i < lists.size(); ++i) {
+        lengths.push_back(static_cast<int64_t>(lists[i].size()));
+    }
+    return lengths;
+}
+
+std::vector<int64_t> first_of_each(const std::vector<int64_t>& lengths) {
+    std::vector<int64_t> first{0};
+    for (const int64_t length : lengths) first.push_back(first.back() + length);
+    return first;
+}
+
+/// One member of each value.
+template <class Member, class Value>
+std::vector<Member> column(const std::vector<Value>& values, Member Value::*member) {
+    std::vector<Member> found;
+    for (const Value& value : values) found.push_back(value.*member);
+    return found;
+}
+
+void write_clips(const GroupWriter& out, const ClassSignatures& signatures) {
+    std::vector<int64_t> ids;
+    for (const SignatureClip& clip : signatures.clips) ids.push_back(clip_id(clip.name));
+    out.write<int64_t>("clips/id", "1", "clip id", "", ids);
+    out.write_texts("clips/name", "clip name", column(signatures.clips, &SignatureClip::name));
+    out.write<int64_t>("clips/frames", "frames", "frames at the pose rate", "",
+                       column(signatures.clips, &SignatureClip::frames));
+    out.write<int64_t>("clips/source_frames", "frames", "frames of the source", "",
+                       column(signatures.clips, &SignatureClip::source_frames));
+    out.write<double>("clips/source_rate", "frames/s", "frame rate of the source", "",
+                      column(signatures.clips, &SignatureClip::source_rate));
+    out.write<int64_t>("clips/runs", "1", "runs of the clip's signature", "S2 §5.3",
+                       lengths_of(signatures.index.parts().clips));
+}
+
+std::vector<SignatureClip> read_clips(const ArtifactReader& file, const std::string& group) {
+    const auto names = file.read_texts(group + "/clips/name");
+    const auto frames = file.read<int64_t>(group + "/clips/frames");
+    const auto source_frames = file.read<int64_t>(group + "/clips/source_frames");
+    const auto rates = file.read<double>(group + "/clips/source_rate");
+    std::vector<SignatureClip> clips;
+    for (size_t i = 0; i < names.size(); ++i) {
+        clips.push_back({names[i], frames[i], source_frames[i], rates[i]});
+    }
+    return clips;
+}
+
+SignatureIndex::Parts read_parts(const ArtifactReader& file, const std::string& group) {
+    const auto at = [&](const char* name) { return group + "/" + name; };
+    SignatureIndex::Parts parts;
+    parts.clips.first = first_of_each(file.read<int64_t>(at("clips/runs")));
+    const auto leaves = file.read<int32_t>(at("runs/leaf"));
+    const auto firsts = file.read<int32_t>(at("runs/first_frame"));
+    const auto frames = file.read<int32_t>(at("runs/frames"));
+    for (size_t i = 0; i < leaves.size(); ++i) {
+        parts.clips.values.push_back({leaves[i], firsts[i], frames[i]});
+    }
+    parts.positions = file.read_matrix(at("leaves/position"));
+    parts.occurrences.first = first_of_each(file.read<int64_t>(at("leaves/occurrences")));
+    parts.occurrences.values = file.read<int32_t>(at("occurrences/run"));
+    parts.near_leaves.first = first_of_each(file.read<int64_t>(at("leaves/near_leaves")));
+    const auto near = file.read<int32_t>(at("near_leaves/leaf"));
+    const auto distances = file.read<float>(at("near_leaves/distance"));
+    for (size_t i = 0; i < near.size(); ++i) {
+        parts.near_leaves.values.push_back({near[i], distances[i]});
+    }
+    parts.reach = file.read<double>(at("reach")).at(0);
+    return parts;
+}
+
+}  // namespace
+
+int64_t ClassSignatures::source_boundary(int32_t clip, int64_t frame) const {
+    const SignatureClip& of = clips[static_cast<size_t>(clip)];
+    if (frame >= of.frames) return of.source_frames;
+    return static_cast<int64_t>(std::ceil(source_frame(frame, of.source_rate, pose_rate)));
+}
+
+void write_signatures(ArtifactWriter& file, const std::string& group,
+                      const ClassSignatures& signatures) {
+    const SignatureIndex::Parts& parts = signatures.index.parts();
+    const auto& runs = parts.clips.values;
+    const auto& near = parts.near_leaves.values;
+    const GroupWriter out(file, group);
+    out.write<double>("pose_rate", "frames/s", "rate that frames count at", "",
+                      {signatures.pose_rate});
+    write_clips(out, signatures);
+    out.write<int32_t>("runs/leaf", "1", "leaf of the pose hierarchy, clip after clip", "S2 §5.3",
+                       column(runs, &SignatureRun::leaf));
+    out.write<int32_t>("runs/first_frame", "frames", "first frame of the run in its clip",
+                       "S2 §5.3", column(runs, &SignatureRun::first_frame));
+    out.write<int32_t>("runs/frames", "frames", "frames of the run", "S2 §5.3",
+                       column(runs, &SignatureRun::frames));
+    out.write_rows("leaves/position", "mm",
+                   "Euclidean distances are those between leaves, per marker", "", parts.positions);
+    out.write<int64_t>("leaves/occurrences", "1", "runs of the leaf", "S2 §5.3",
+                       lengths_of(parts.occurrences));
+    out.write<int32_t>("occurrences/run", "1", "rows of runs, leaf after leaf", "S2 §5.3",
+                       parts.occurrences.values);
+    out.write<int64_t>("leaves/near_leaves", "1", "leaves listed as near to it", "",
+                       lengths_of(parts.near_leaves));
+    out.write<int32_t>("near_leaves/leaf", "1", "leaves near each leaf, nearest first", "",
+                       column(near, &NearLeaf::leaf));
+    out.write<float>("near_leaves/distance", "mm", "from the leaf, per marker", "",
+                     column(near, &NearLeaf::distance));
+    out.write<double>("reach", "mm", "leaves farther apart are not near, per marker", "",
+                      {parts.reach});
+}
+
+ClassSignatures read_signatures(const ArtifactReader& file, const std::string& group) {
+    if (!file.contains(group + rate_path)) {
+        throw StoreError(fmt::format("{} holds no signatures of class {}",
+                                     path_for_message(file.path().string()), group.substr(1)));
+    }
+    try {
+        return {file.read<double>(group + rate_path).at(0), read_clips(file, group),
+                SignatureIndex(read_parts(file, group))};
+    } catch (const std::invalid_argument& error) {
+        throw StoreError(
+            fmt::format("{}: {}", path_for_message(file.path().string()), error.what()));
+    }
+}
+
+std::vector<std::string> signature_classes(const ArtifactReader& file) {
+    std::vector<std::string> groups;
+    for (const DatasetSpec& spec : file.datasets()) {
+        if (spec.path.ends_with(rate_path)) {
+            groups.push_back(spec.path.substr(0, spec.path.size() - rate_path.size()));
+        }
+    }
+    return groups;
+}
+
+}  // namespace kinetome
