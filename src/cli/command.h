@@ -52,5 +52,8 @@ Command export_command();
 Command evaluate_command();
 Command walk_command();
 Command label_command();
+Command query_command();
+Command compress_command();
+Command decompress_command();
 
 }  // namespace kinetome::cli

@@ -24,6 +24,7 @@ struct MotionSteps {
 /// The linear models of some leaves, rounded as they are stored.
 class LeafModels {
   public:
+    LeafModels() = default;
     /// Of the leaves of a hierarchy with these numbers, ascending.
     LeafModels(const PoseHierarchy& hierarchy, std::vector<int32_t> leaves);
     /// Out of bytes(). Throws std::out_of_range when they end too early.

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "command.h"
+#include "frame_range.h"
+#include "kinetome/base/file.h"
+#include "kinetome/stages/open_store.h"
+#include "kinetome/stages/signature_query.h"
+
+namespace kinetome::cli {
+namespace {
+
+struct QueryFlags {
+    std::filesystem::path store, output;
+    std::string frames, rule = "pace", format = "csv", generation = "current";
+    SignatureQuery query;
+};
+
+MatchRule parse_rule(const std::string& name) {
+    if (name == "pace") return MatchRule::pace;
+    if (name == "repeats") return MatchRule::repeats;
+    if (name == "edit") return MatchRule::edit;
+    throw UsageError(fmt::format("--match-rule {}: expected pace, repeats or edit", name));
+}
+
+ExitCode answer(const QueryFlags& flags, const Invocation& invocation) {
+    SignatureQuery query = flags.query;
+    if (query.clip.empty() == query.file.empty()) {
+        throw UsageError("give either --clip, a clip of the store, or --file, a take");
+    }
+    if (query.answers < 1) throw UsageError(fmt::format("-k {}: at least 1", query.answers));
+    if (!(query.search.match.tolerance >= 0)) {
+        throw UsageError(fmt::format("--match-tolerance {}: at least 0, which means equal leaves",
+                                     query.search.match.tolerance));
+    }
+    query.search.match.rule = parse_rule(flags.rule);
+    if (!flags.frames.empty()) query.frames = parse_frame_range(flags.frames);
+    const TableFormat format = parse_table_format(flags.format);
+    const OpenStore open(flags.store, flags.generation);
+    const std::string text =
+        write_table(query_table(open.generation, query, invocation.resources().threads), format);
+    if (!flags.output.empty()) {
+        write_file_atomically(flags.output, text);
+    } else {
+        std::fwrite(text.data(), 1, text.size(), stdout);
+    }
+    return ExitCode::success;
+}
+
+}  // namespace
+
+Command query_command() {
+    return {"query", "find the sub-motions of a store that are most like one",
+            "kinetome query motion.store --clip 02_01 --frames 120:360 -k 10 --rerank",
+            [](CLI::App& app) -> Run {
+                auto flags = std::make_shared<QueryFlags>();
+                SignatureQuery& query = flags->query;
+                app.add_option("STORE", flags->store, "store to read")->required();
+                app.add_option("--clip", query.clip, "clip of the store to look for");
+                app.add_option("--file", query.file, "take to look for, in the store or not");
+                app.add_option("--frames", flags->frames,
+                               "A:B, its frames from A to before B (default: all)");
+                app.add_option("-k", query.answers, "most answers")->capture_default_str();
+                app.add_option(
+                    "--match-tolerance", query.search.match.tolerance,
+                    "most that an answer may differ, mm per marker; 0: the same leaves in "
+                    "the same order (default: any)");
+                app.add_option("--match-rule", flags->rule,
+                               "pace: at most twice as fast or slow; repeats, edit: leaf by leaf, "
+                               "however long each lasts")
+                    ->capture_default_str();
+                app.add_flag("--rerank", query.rerank,
+                             "put answers in the order of dynamic time warping of the markers");
+                app.add_option("--format", flags->format, "csv or json")->capture_default_str();
+                app.add_option("-o,--output", flags->output,
+                               "file to write (default: standard output)");
+                app.add_option("--generation", flags->generation,
+                               "id, the beginning of one, or current");
+                return [=](const Invocation& invocation) { return answer(*flags, invocation); };
+            }};
+}
+
+}  // namespace kinetome::cli
