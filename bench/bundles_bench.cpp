@@ -1,19 +1,24 @@
 // How pure, wide and tall are motion bundles, and how fast are they found?
 //
-//   bundles_bench CORPUS TRUTH [--starts N] [--spread S] [--threads N] [--curve]
+//   bundles_bench CORPUS TRUTH [--set takes|subjects|corpus|known] [--starts N] [--spread S]
+//       [--threads N] [--curve]
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <exception>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "cost.h"
+#include "kinetome/base/random.h"
 #include "kinetome/formats/annotation.h"
-#include "kinetome/models/bundle_ends.h"
+#include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/bundle_score.h"
 #include "kinetome/models/motion_bundle.h"
 #include "spelled_takes.h"
@@ -162,6 +167,117 @@ void judge_labelled_takes(const Options& options) {
     }
 }
 
+/// Bundles as "height x mean frames", those with most frames first.
+std::string largest_of(const MotionString& string, const std::vector<SubstringBundle>& bundles) {
+    std::vector<std::pair<double, std::string>> all;
+    for (const SubstringBundle& bundle : bundles) {
+        if (bundle.is_degenerate()) continue;
+        double frames = 0;
+        for (const Substring& member : bundle.members)
+            frames += string.mean_frame(member.last) - string.mean_frame(member.first);
+        all.emplace_back(-frames, fmt::format("{}x{:.0f}", bundle.height(),
+                                              frames / static_cast<double>(bundle.height())));
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::string text;
+    for (size_t i = 0; i < std::min<size_t>(all.size(), 6); ++i) text += " " + all[i].second;
+    return text;
+}
+
+/// Pose vectors with noise of a tenth of each column's standard deviation.
+void add_noise(bench::PoseTakes& takes) {
+    RandomStream random(1, "bundles bench noise");
+    for (Eigen::Index column = 0; column < takes.poses.cols(); ++column) {
+        const auto values = takes.poses.col(column).cast<double>();
+        const double deviation = std::sqrt((values.array() - values.mean()).square().mean());
+        for (Eigen::Index row = 0; row < takes.poses.rows(); ++row)
+            takes.poses(row, column) += static_cast<float>(0.1 * deviation * random.normal());
+    }
+}
+
+/// Groups of nodes that edges join in either direction.
+int64_t weak_components(const MotionGraph& graph) {
+    std::vector<int32_t> group(static_cast<size_t>(graph.nodes()));
+    for (int32_t node = 0; node < graph.nodes(); ++node) group[static_cast<size_t>(node)] = node;
+    const auto root = [&](int32_t node) {
+        while (group[static_cast<size_t>(node)] != node) node = group[static_cast<size_t>(node)];
+        return node;
+    };
+    int64_t groups = graph.nodes();
+    for (int32_t node = 0; node < graph.nodes(); ++node) {
+        for (const int32_t target : graph.targets(node)) {
+            const int32_t a = root(node), b = root(target);
+            if (a == b) continue;
+            group[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+            --groups;
+        }
+    }
+    return groups;
+}
+
+struct KnownSet {
+    std::vector<std::string> takes;
+    int64_t clusters;
+    double rho;
+    bool noise = false;
+};
+
+/// Sets whose bundles S1 §5 describes, or is likely to: structure, graph, milliseconds.
+void describe_known_takes(const Options& options) {
+    const std::vector<KnownSet> sets = {{{"02_05"}, 80, 1},           {{"02_05"}, 80, 2},
+                                        {{"02_05"}, 80, 1, true},     {{"03_03"}, 200, 1},
+                                        {{"03_03"}, 200, 2},          {{"14_02"}, 250, 1},
+                                        {{"14_02"}, 250, 2},          {{"14_02"}, 250, 1, true},
+                                        {{"02_05", "03_03"}, 250, 1}, {{"13_29", "13_30"}, 250, 1}};
+    fmt::print(
+        "takes          kappa rho noise frames letters bundles cover. mixed nodes edges strong "
+        "weak    ms graph  largest\n");
+    for (const KnownSet& set : sets) {
+        auto takes = bench::PoseTakes::read(options.corpus, set.takes);
+        if (set.noise) add_noise(takes);
+        PoseClusterOptions clusters;
+        clusters.clusters = set.clusters;
+        const bench::SpelledTakes spelled(takes, clusters, options.threads);
+        MotionBundleOptions bundles;
+        if (!options.spread.empty()) parse_spread(options.spread, bundles);
+        bundles.rho = set.rho;
+        std::vector<double> seconds;
+        Found found;
+        for (int turn = 0; turn < 9; ++turn) {
+            found = find(spelled, bundles, 1);
+            seconds.push_back(found.seconds);
+        }
+        // Each take is a class of its own: a bundle is mixed if it is not pure.
+        std::vector<FrameClasses> classes;
+        for (size_t i = 0; i < takes.frames.size(); ++i)
+            classes.emplace_back(static_cast<size_t>(takes.frames[i]), static_cast<int32_t>(i));
+        const BundleScore one = score(spelled.string, found.bundles, classes);
+        std::vector<int32_t> node_of, f;
+        int32_t nodes = 0;
+        for (const SubstringBundle& bundle : found.bundles)
+            node_of.push_back(bundle.is_degenerate() ? -1 : nodes++);
+        for (int64_t j = 0; j < spelled.string.size(); ++j)
+            f.push_back(static_cast<int32_t>(spelled.string.mean_frame(j)));
+        BundleGraph graph;
+        const double graph_seconds =
+            bench::cost_of([&] {
+                graph = bundle_graph(bundle_members(spelled.string, found.bundles, f), node_of,
+                                     nodes, takes.frames);
+            }).wall;
+        size_t strong = 0;
+        for (const auto& component : strong_components(graph.graph).nodes)
+            strong = std::max(strong, component.size());
+        fmt::print(
+            "{:<14} {:>5} {:>3} {:>5} {:>6} {:>7} {:>7} {:>6.2f} {:>5.3f} {:>5} {:>5} {:>6} "
+            "{:>4} {:>5.1f} {:>5.2f} {}\n",
+            name_of(set.takes), set.clusters, set.rho, set.noise ? "0.1" : "-", takes.poses.rows(),
+            spelled.string.size(), one.bundles, one.coverage, 1 - one.purity, graph.graph.nodes(),
+            graph.graph.edges(), strong, weak_components(graph.graph), 1e3 * bench::median(seconds),
+            1e3 * graph_seconds, largest_of(spelled.string, found.bundles));
+    }
+}
+
 std::vector<std::string> all_takes(const fs::path& corpus) {
     std::vector<std::string> names;
     for (const fs::path& file : bench::amc_files(corpus)) names.push_back(file.stem().string());
@@ -222,8 +338,8 @@ int main(int argc, char** argv) {
     try {
         CLI::App app("purity, coverage and speed of motion bundles");
         Options options;
-        std::string only = "takes";
-        app.add_option("--only", only);
+        std::string set = "takes";
+        app.add_option("--set", set);
         app.add_option("corpus", options.corpus)->required();
         app.add_option("truth", options.truth)->required();
         app.add_option("--starts", options.starts);
@@ -231,9 +347,13 @@ int main(int argc, char** argv) {
         app.add_option("--spread", options.spread);
         app.add_flag("--curve", options.curve);
         CLI11_PARSE(app, argc, argv);
-        if (only == "takes") judge_labelled_takes(options);
-        if (only == "subjects") judge_corpus(options, true);
-        if (only == "corpus") judge_corpus(options, false);
+        constexpr std::array sets = {"takes", "subjects", "corpus", "known"};
+        if (std::find(sets.begin(), sets.end(), set) == sets.end())
+            throw UsageError("--set " + set + ": expected takes, subjects, corpus or known");
+        if (set == "takes") judge_labelled_takes(options);
+        if (set == "subjects") judge_corpus(options, true);
+        if (set == "known") describe_known_takes(options);
+        if (set == "corpus") judge_corpus(options, false);
         return 0;
     } catch (const std::exception& error) {
         fmt::print(stderr, "bundles_bench: {}\n", error.what());
