@@ -50,6 +50,7 @@ Command gc_command();
 Command diff_command();
 Command export_command();
 Command evaluate_command();
+Command estimate_command();
 Command walk_command();
 Command label_command();
 Command query_command();

@@ -14,6 +14,7 @@
 #include "kinetome/report/timeline_svg.h"
 #include "kinetome/stages/aligned_text.h"
 #include "kinetome/stages/evaluation.h"
+#include "kinetome/stages/hierarchy_evaluation.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_evaluation.h"
 #include "kinetome/stages/stored_evaluation.h"
@@ -26,6 +27,8 @@ namespace fs = std::filesystem;
 struct EvaluateFlags {
     fs::path store, truth, cycles, segments, primitives, pictures, output;
     std::string generation = "current", what = "segments", peer, format = "text";
+    std::string clips, held_out = "all";
+    std::shared_ptr<ReindexFlags> hierarchy;  ///< options of the pose hierarchy
     double rate = 120;
     EvaluationOptions evaluation;
 };
@@ -35,14 +38,24 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
     app.add_option("--truth", flags.truth,
                    "annotated activities: clip,first,end,label,end_lo,end_hi");
     app.add_option("--what", flags.what,
-                   "segments, primitives, variance (inside clusters of primitives) or recurrence "
-                   "(of poses; needs no annotation)")
+                   "segments, primitives, variance (inside clusters of primitives); recurrence (of "
+                   "poses), estimation or compression (by a pose hierarchy), which need no "
+                   "annotation")
         ->capture_default_str();
     app.add_option("--segments", flags.segments, "table as export segments writes it");
     app.add_option("--primitives", flags.primitives, "table as export primitives writes it");
     app.add_option("--cycles", flags.cycles, "annotated repetitions: clip,first,end,label");
     app.add_option("--peer", flags.peer,
                    "also score another method on the takes of STORE: ppca (Barbič et al. 2004)");
+    app.add_option(
+        "--clips", flags.clips,
+        "takes whose pose hierarchy is evaluated: names, * and ? as in a shell, separated "
+        "by commas");
+    app.add_option("--held-out", flags.held_out,
+                   "what an estimation is tested on: frames (a fifth, at random), blocks (of 4 s, "
+                   "every 5th), takes (every 14th by name) or all")
+        ->capture_default_str();
+    flags.hierarchy = std::make_shared<ReindexFlags>(app, "pose_hierarchy");
     app.add_option("--rate", flags.rate, "frames a second of tables, where no STORE tells")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
@@ -56,6 +69,10 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
     app.add_option("--generation", flags.generation, "id, the beginning of one, or current");
 }
 
+bool is_about_hierarchy(const EvaluateFlags& flags) {
+    return flags.what == "estimation" || flags.what == "compression";
+}
+
 void require(bool given, const std::string& advice) {
     if (!given) throw UsageError(advice);
 }
@@ -65,12 +82,14 @@ bool is_one_of(const std::string& word, const std::set<std::string>& words) {
 }
 
 void check(const EvaluateFlags& flags) {
-    require(is_one_of(flags.what, {"segments", "primitives", "variance", "recurrence"}),
-            "--what " + flags.what + ": expected segments, primitives, variance or recurrence");
+    require(is_one_of(flags.what, {"segments", "primitives", "variance", "recurrence", "estimation",
+                                   "compression"}),
+            "--what " + flags.what +
+                ": expected segments, primitives, variance, recurrence, estimation or compression");
     require(is_one_of(flags.format, {"text", "csv", "json"}),
             "--format " + flags.format + ": expected text, csv or json");
     require(is_one_of(flags.peer, {"", "ppca"}), "--peer " + flags.peer + ": expected ppca");
-    require(!flags.truth.empty() || flags.what == "recurrence",
+    require(!flags.truth.empty() || flags.what == "recurrence" || is_about_hierarchy(flags),
             "give the annotation to compare with: --truth truth.csv");
     const bool has_table = (flags.what == "segments" && !flags.segments.empty()) ||
                            (flags.what == "primitives" && !flags.primitives.empty());
@@ -188,10 +207,22 @@ std::string segments_report(const EvaluateFlags& flags, const EvaluationInput& i
     return in_format(evaluation_table(evaluation), evaluation_summary(evaluation), flags.format);
 }
 
-std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input) {
+Table hierarchy_table(const EvaluateFlags& flags, const Generation& generation,
+                      const Workers& workers) {
+    const ReindexOptions resolved = flags.hierarchy->resolve();
+    const HierarchyEvaluationOptions options{resolved.principal_markers, resolved.pose_hierarchy};
+    const auto takes = stored_markers(generation, flags.clips);
+    if (flags.what == "compression") return compression_table(takes, options, workers);
+    return estimation_table(takes, parse_held_out(flags.held_out), options, workers);
+}
+
+std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
+                      const Workers& workers) {
     if (flags.what == "segments") return segments_report(flags, input);
     Table table;
-    if (flags.what == "recurrence") {
+    if (is_about_hierarchy(flags)) {
+        table = hierarchy_table(flags, input.generation(), workers);
+    } else if (flags.what == "recurrence") {
         table = recurrence_table(stored_recurrence(input.generation()));
     } else if (flags.what == "primitives") {
         table = evaluation_table(evaluate_primitives(input.annotated(), input.primitives(),
@@ -213,9 +244,10 @@ Command evaluate_command() {
             [](CLI::App& app) -> Run {
                 auto flags = std::make_shared<EvaluateFlags>();
                 add_options(app, *flags);
-                return [=](const Invocation&) {
+                return [=](const Invocation& invocation) {
                     check(*flags);
-                    const std::string text = report_on(*flags, EvaluationInput(*flags));
+                    const std::string text =
+                        report_on(*flags, EvaluationInput(*flags), invocation.resources().threads);
                     if (!flags->output.empty()) {
                         write_file_atomically(flags->output, text);
                     } else {

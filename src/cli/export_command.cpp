@@ -53,9 +53,8 @@ Command export_command() {
             auto flags = std::make_shared<ExportFlags>();
             app.add_option("STORE", flags->store, "store to read")->required();
             app.add_option("WHAT", flags->what,
-                           "clips, letters, neighbors, segments, primitives, primitive-graph, "
-                           "signatures or "
-                           "timeline")
+                           "clips, letters, hierarchy, neighbors, segments, primitives, "
+                           "primitive-graph, signatures or timeline")
                 ->required();
             app.add_option(
                 "--format", flags->format,

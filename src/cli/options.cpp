@@ -33,12 +33,13 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
     app.add_flag("--quiet", options.log.quiet, "only warnings and errors")->group(group);
 }
 
-ReindexFlags::ReindexFlags(CLI::App& app) {
+ReindexFlags::ReindexFlags(CLI::App& app, const std::string& stage) {
     app.add_option("--preset", preset_, "paper: every option at the paper's value")
         ->check(CLI::IsMember({"paper"}));
     app.add_option("--config", config_, "file of options, as config.toml of a generation");
     ReindexOptions defaults;
     for (const OptionRow& row : option_rows(defaults)) {
+        if (!stage.empty() && row.stage != stage) continue;
         auto given = std::make_shared<Given>(Given{row.name, "", nullptr});
         given->flag = app.add_option("--" + row.name, given->text, row.help)
                           ->default_str(row.get())

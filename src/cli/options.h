@@ -28,7 +28,8 @@ void add_common_options(CLI::App& app, CommonOptions& options);
 /// file, then the flags.
 class ReindexFlags {
   public:
-    explicit ReindexFlags(CLI::App& app);
+    /// `stage`: whose options alone are flags, for commands that are about it; "": of all.
+    explicit ReindexFlags(CLI::App& app, const std::string& stage = "");
     /// All options. Throws UsageError when they make no sense together.
     ReindexOptions resolve() const;
     /// Name and value of those that were given.

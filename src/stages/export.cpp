@@ -10,6 +10,7 @@
 #include "kinetome/base/csv.h"
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
+#include "kinetome/stages/pose_hierarchy_file.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/stages/signature_query.h"
 #include "kinetome/stages/stored_graph.h"
@@ -191,6 +192,23 @@ Table neighbor_table(const Generation& generation) {
     return table;
 }
 
+Table hierarchy_table(const Generation& generation) {
+    Table table{{"class", "node", "parent", "below", "above", "leaf", "frames", "error_mm"}, {}};
+    const ArtifactReader file = generation.open("pose_hierarchy.h5");
+    for (const std::string& clip_class : hierarchy_classes(file)) {
+        const PoseHierarchy hierarchy = read_pose_hierarchy(file, "/" + clip_class).hierarchy;
+        for (size_t i = 0; i < hierarchy.nodes.size(); ++i) {
+            const HierarchyNode& node = hierarchy.nodes[i];
+            Table::Cell error = std::string();
+            if (node.is_leaf()) error = hierarchy.leaf_errors[node.leaf];
+            table.rows.push_back({clip_class, static_cast<int64_t>(i), int64_t{node.parent},
+                                  int64_t{node.below}, int64_t{node.above}, int64_t{node.leaf},
+                                  node.rows, error});
+        }
+    }
+    return table;
+}
+
 Table export_table(const OpenStore& open, std::string_view what,
                    const std::filesystem::path& labels) {
     const Generation& generation = open.generation;
@@ -199,9 +217,10 @@ Table export_table(const OpenStore& open, std::string_view what,
     if (what == "neighbors") return neighbor_table(generation);
     if (what == "segments") return segment_table(generation);
     if (what == "primitives") return primitive_table(open, labels);
+    if (what == "hierarchy") return hierarchy_table(generation);
     if (what == "signatures") return signature_table(generation);
     throw UsageError(fmt::format(
-        "cannot export '{}': there are clips, letters, neighbors, segments, primitives, "
+        "cannot export '{}': there are clips, letters, hierarchy, neighbors, segments, primitives, "
         "primitive-graph, signatures, timeline",
         what));
 }

@@ -41,6 +41,10 @@ Table segment_table(const Generation& generation);
 /// clip,first,end,activity_first,cluster,label: likewise; labels as stored_primitives gives them.
 Table primitive_table(const OpenStore& open, const std::filesystem::path& labels = {});
 
+/// class,node,parent,below,above,leaf,frames,error_mm: nodes of the pose hierarchies; -1 where
+/// there is none, error (RMS, per marker) of leaves alone.
+Table hierarchy_table(const Generation& generation);
+
 /// WHAT of `export`, by name. Throws UsageError listing what there is.
 Table export_table(const OpenStore& open, std::string_view what,
                    const std::filesystem::path& labels = {});

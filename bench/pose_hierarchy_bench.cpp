@@ -1,0 +1,190 @@
+// What does a pose hierarchy of millions of frames cost, and how does that grow with the number of
+// columns? Poses are those of real takes at other paces, in other sizes and mirrored, made when
+// they are read, so that --memory is all there is for the model and for rows that are kept.
+//     pose_hierarchy_bench CORPUS [--frames N] [--columns 30,93,123] [--leaf-tolerance MM]
+//                          [--memory 1G] [--threads N] [--nodes-per-pass N]
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "cost.h"
+#include "kinetome/base/digest.h"
+#include "kinetome/features/markers.h"
+#include "kinetome/math/kept_rows.h"
+#include "kinetome/models/hierarchy_growth.h"
+#include "kinetome/models/principal_markers.h"
+#include "kinetome/stages/pose_hierarchy_memory.h"
+#include "marker_takes.h"
+
+namespace {
+
+using namespace kinetome;
+using namespace kinetome::bench;
+
+/// A take at another pace and size, perhaps mirrored.
+struct Variation {
+    size_t take = 0;
+    double pace = 1;  ///< frames of the take a row
+    float size = 1;
+    bool mirrored = false;
+    int64_t first = 0;  ///< row
+    int64_t rows = 0;
+};
+
+/// Column of the pose in a mirror from the column it is seen in: left and right change places.
+std::vector<int64_t> mirrored_columns(const std::vector<std::string>& names) {
+    std::vector<int64_t> columns;
+    for (const std::string& name : names) {
+        std::string other = name;
+        if (name.front() == 'l' || name.front() == 'r')
+            other.front() = name.front() == 'l' ? 'r' : 'l';
+        const auto found = std::ranges::find(names, other);
+        const auto marker =
+            (found == names.end() ? std::ranges::find(names, name) : found) - names.begin();
+        for (int64_t axis = 0; axis < 3; ++axis) columns.push_back(3 * marker + axis);
+    }
+    return columns;
+}
+
+/// n × columns: the first markers of a skeleton, and beyond its last the middles between them.
+class VariedPoses final : public RowSource {
+  public:
+    VariedPoses(const std::vector<MarkerTake>& takes, const std::vector<std::string>& names,
+                int64_t frames, int64_t columns)
+        : takes_(takes), mirror_(mirrored_columns(names)), columns_(columns) {
+        constexpr float sizes[] = {1.F, 0.94F, 1.12F, 0.88F, 1.06F};
+        constexpr double paces[] = {1, 0.83, 1.21, 0.91, 1.07, 0.77, 1.31};
+        std::vector<ClipExtent> extents;
+        for (size_t copy = 0, at = 0; rows_ < frames; ++at) {
+            if (at == takes.size()) {
+                at = 0;
+                ++copy;
+            }
+            Variation one{at,
+                          paces[copy % std::size(paces)],
+                          sizes[copy % std::size(sizes)],
+                          copy % 2 == 1,
+                          rows_,
+                          0};
+            const auto last = static_cast<double>(takes[at].markers.rows() - 1);
+            one.rows = std::min(static_cast<int64_t>(last / one.pace) + 1, frames - rows_);
+            rows_ += one.rows;
+            extents.push_back(
+                {hash_name(fmt::format("{}+{}", takes[at].name, copy)), one.rows, one.rows});
+            variations_.push_back(one);
+        }
+        layout_ = layout_pieces(extents);
+    }
+
+    int64_t columns() const override { return columns_; }
+    const PieceLayout& layout() const override { return layout_; }
+    RowBlock read(const RowRange& range) const override {
+        MatrixF rows(range.size(), columns_);
+        auto one = std::ranges::upper_bound(variations_, range.first, {}, &Variation::first) - 1;
+        for (int64_t row = range.first; row < range.end; ++row) {
+            while (row >= one->first + one->rows) ++one;
+            fill(*one, row - one->first, rows.row(row - range.first));
+        }
+        return RowBlock(std::move(rows));
+    }
+
+  private:
+    void fill(const Variation& one, int64_t row,
+              Eigen::Ref<Eigen::RowVectorXf, 0, Eigen::InnerStride<>> pose) const {
+        const MatrixF& markers = takes_[one.take].markers;
+        const double at = static_cast<double>(row) * one.pace;
+        const auto before = static_cast<int64_t>(at);
+        const int64_t after = std::min(before + 1, markers.rows() - 1);
+        const auto share = static_cast<float>(at - static_cast<double>(before));
+        const int64_t own = std::min(columns_, markers.cols());
+        for (int64_t j = 0; j < own; ++j) {
+            const int64_t from = one.mirrored ? mirror_[static_cast<size_t>(j)] : j;
+            const float sign = one.mirrored && j % 3 == 0 ? -1.F : 1.F;
+            pose[j] =
+                sign * one.size *
+                (markers(before, from) + share * (markers(after, from) - markers(before, from)));
+        }
+        for (int64_t j = own; j < columns_; ++j)
+            pose[j] = (pose[j - own + 3] + pose[j - own + 6]) / 2;
+    }
+
+    const std::vector<MarkerTake>& takes_;
+    std::vector<int64_t> mirror_;
+    int64_t columns_, rows_ = 0;
+    std::vector<Variation> variations_;
+    PieceLayout layout_;
+};
+
+struct Options {
+    std::filesystem::path corpus;
+    int64_t frames = 2'500'000, nodes_per_pass = 0;
+    std::vector<int64_t> columns{30, 93, 123};
+    double leaf_tolerance = 45;
+    std::string memory;
+    int threads = 1;
+};
+
+void measure(const VariedPoses& poses, const Options& options, const Resources& resources) {
+    PoseHierarchyOptions growth;
+    growth.leaf_tolerance = options.leaf_tolerance;
+    const Workers workers(resources.threads);
+    GrownHierarchy grown;
+    size_t known = 0;
+    const Cost cost = cost_of([&] {
+        const auto principal = select_principal_markers(moments_of(poses, workers), {});
+        known = principal.columns.size();
+        const HierarchyMemory memory = share_memory(
+            {poses.rows(), poses.columns(), static_cast<int64_t>(known)}, growth, resources, 1);
+        const KeptRows kept(
+            poses.layout(), poses.columns(),
+            [&](const RowRange& range) { return MatrixF(poses.read(range).view()); }, workers,
+            memory.pose_bytes);
+        const KeptRows columns(
+            poses.layout(), static_cast<int64_t>(known),
+            [&](const RowRange& range) -> MatrixF {
+                return kept.read(range).view()(Eigen::all, principal.columns);
+            },
+            workers, memory.principal_bytes);
+        grown = grow_pose_hierarchy(
+            kept, columns, principal.columns, growth, workers,
+            options.nodes_per_pass > 0 ? options.nodes_per_pass : memory.nodes_per_pass);
+    });
+    fmt::print("{:9} {:8} {:10} {:7} {:8.1f} {:8.1f} {:10.0f}  {}\n", poses.rows(), poses.columns(),
+               known, grown.hierarchy.leaves(), cost.cpu, cost.wall,
+               static_cast<double>(peak_resident_bytes()) / (1 << 20),
+               digest_of(packed(grown)).hex());
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("what a pose hierarchy of millions of frames costs");
+    Options options;
+    app.add_option("CORPUS", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc")->required();
+    app.add_option("--frames", options.frames, "poses")->capture_default_str();
+    app.add_option("--columns", options.columns, "columns of a pose")->delimiter(',');
+    app.add_option("--leaf-tolerance", options.leaf_tolerance, "mm")->capture_default_str();
+    app.add_option("--memory", options.memory, "bytes granted, such as 1G");
+    app.add_option("--threads", options.threads, "threads")->capture_default_str();
+    app.add_option("--nodes-per-pass", options.nodes_per_pass, "0: as memory allows");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const auto clips = read_clips(options.corpus);
+        const auto takes = markers_of(clips);
+        const auto names = marker_names(*clips.front().clip.skeleton);
+        std::optional<uint64_t> memory;
+        if (!options.memory.empty()) memory = parse_bytes(options.memory);
+        const Resources resources = granted_resources(options.threads, memory);
+        fmt::print("   frames  columns  principal  leaves    cpu s   wall s   peak MiB  digest\n");
+        for (const int64_t columns : options.columns) {
+            measure(VariedPoses(takes, names, options.frames, columns), options, resources);
+        }
+    } catch (const Error& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return static_cast<int>(error.exit_code());
+    }
+}

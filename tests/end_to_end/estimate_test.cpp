@@ -1,0 +1,65 @@
+// What `estimate` and the evaluation of pose hierarchies promise.
+#include "program.h"
+#include "store_on_disk.h"
+#include "support/temporary_folder.h"
+#include "takes.h"
+
+namespace {
+
+constexpr int usage = 64;
+
+/// A store of generated takes and their pose hierarchy.
+struct ModelledStore {
+    TemporaryFolder folder;
+    std::string path = (folder / "store").string();
+    ModelledStore() {
+        generate_corpus(folder / "takes", 6000, 2);
+        require_program(
+            reindex(folder / "takes", path, {"--only", "frames,features,pose_hierarchy"}));
+    }
+    std::string output(const std::string& name) const { return (folder / name).string(); }
+};
+
+}  // namespace
+
+TEST_CASE("estimate writes motion and meter, and ends with the error", "[estimate]") {
+    const ModelledStore store;
+    const std::string take = (store.folder / "takes" / "01" / "01_01.amc").string();
+    const CommandResult result =
+        require_program({"estimate", store.path, "--file", take, "-o", store.output("e.bvh"),
+                         "--meter", store.output("meter.csv")});
+    const auto lines = lines_of(result.output);
+    REQUIRE(lines.size() == 3);
+    CHECK(lines[0].starts_with("principal     "));
+    CHECK(lines[2].starts_with("rms_mm "));
+    CHECK(std::stod(lines[2].substr(7)) > 0);
+    const auto meter = lines_of(text_of(store.output("meter.csv")));
+    CHECK(meter.at(0) == "frame,error_mm,leaf,leaf_changes");
+    const std::string frames = std::to_string(meter.size() - 1);
+    CHECK(contains(lines[1], frames + " frames at 120 a second"));
+    CHECK(contains(text_of(store.output("e.bvh")), "Frames: " + frames + "\n"));
+
+    require_program({"estimate", store.path, "--file", take, "-o", "e.txt"}, usage);
+    require_program({"estimate", store.path, "--file", store.output("e.txt")}, usage);
+    require_program({"estimate", store.path}, usage);
+}
+
+TEST_CASE("a pose hierarchy is exported and evaluated", "[estimate]") {
+    const ModelledStore store;
+    const auto nodes = lines_of(require_program({"export", store.path, "hierarchy"}).output);
+    CHECK(nodes.at(0) == "class,node,parent,below,above,leaf,frames,error_mm");
+    CHECK(nodes.size() > 2);
+    const auto evaluated = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"evaluate", store.path, "--format", "csv"});
+        return lines_of(require_program(more).output);
+    };
+    const auto compression =
+        evaluated({"--what", "compression", "--clips", "01_*", "--leaf-tolerance", "30"});
+    CHECK(compression.at(0) ==
+          "class,frames,principal,leaves,ratio,ratio_paper,rms_mm,p95_mm,max_mm");
+    CHECK(compression.size() == 2);
+    CHECK(evaluated({"--what", "estimation", "--held-out", "blocks"}).size() == 7);
+    require_program({"evaluate", store.path, "--what", "compression", "--clips", "none"}, usage);
+    require_program({"evaluate", store.path, "--what", "estimation", "--leaf-tolerance", "0"},
+                    usage);
+}
