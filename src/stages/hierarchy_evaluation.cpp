@@ -37,7 +37,9 @@ MatrixF poses_where(const MarkerTakes& takes, const std::vector<bool>& held, boo
 
 void add_estimation(Table& table, const MarkerTakes& takes, HeldOut way,
                     const HierarchyEvaluationOptions& options, const Workers& workers) {
-    const auto held = held_out(takes.takes, takes.rate, {.what = way});
+    HeldOutOptions choice{.what = way};
+    choice.every_take = std::min(choice.every_take, static_cast<int64_t>(takes.takes.size()));
+    const auto held = held_out(takes.takes, takes.rate, choice);
     const MatrixF training = poses_where(takes, held, false), test = poses_where(takes, held, true);
     if (training.rows() == 0 || test.rows() == 0) {
         throw UsageError(fmt::format("{} take(s) of class {} are too few to hold out {}",

@@ -114,7 +114,9 @@ TEST_CASE("takes of a store are chosen by name and evaluated") {
     CHECK(number(by_rms.rows.at(0)[4]) > number(by_maximum.rows.at(0)[4]));
     CHECK(number(by_maximum.rows.at(0)[8]) <= options.hierarchy.leaf_tolerance);
     CHECK(estimation_table(all, parse_held_out("blocks"), options, Workers(2)).rows.size() == 6);
-    CHECK_THROWS_AS(estimation_table(first, parse_held_out("takes"), options, Workers(2)),
+    CHECK(estimation_table(all, parse_held_out("takes"), options, Workers(2)).rows.size() == 6);
+    const auto one = stored_markers(open.generation, all[0].names[0]);
+    CHECK_THROWS_AS(estimation_table(one, parse_held_out("takes"), options, Workers(2)),
                     UsageError);
     CHECK_THROWS_AS(parse_held_out("some"), UsageError);
 }
