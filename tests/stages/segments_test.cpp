@@ -36,7 +36,7 @@ std::map<std::string, std::vector<std::pair<int64_t, int64_t>>> ranges_of(const 
 
 }  // namespace
 
-TEST_CASE("segments cover every frame of every take, primitives every frame of an activity") {
+TEST_CASE("segments cover every frame of every take, primitives those of an activity") {
     const TemporaryFolder folder;
     generate_corpus({.frames = 6000, .subjects = 2}, folder / "takes", 2);
     reindex(request_for(folder / "takes", folder / "store"), Log(), {});
@@ -63,11 +63,16 @@ TEST_CASE("segments cover every frame of every take, primitives every frame of a
         CHECK(std::get<int64_t>(row[1]) == covered->second);
         covered->second = std::get<int64_t>(row[2]);
     }
+    std::map<std::string, int64_t> frames;
+    for (const CatalogClip& clip : generation.catalog().clips) frames[clip.name] = clip.frames;
     for (const auto& row : segment_table(generation).rows) {
         if (std::get<std::string>(row[3]) == "transition") continue;
         const auto covered = ends.find({std::get<std::string>(row[0]), std::get<int64_t>(row[1])});
         REQUIRE(covered != ends.end());
-        CHECK(covered->second == std::get<int64_t>(row[2]));
+        // The end of a take may cut a movement off.
+        const int64_t end = std::get<int64_t>(row[2]);
+        const bool ends_take = end == frames.at(std::get<std::string>(row[0]));
+        CHECK((ends_take ? covered->second <= end : covered->second == end));
     }
 }
 
