@@ -212,7 +212,8 @@ std::vector<HierarchyShape> hierarchy_shapes(const CorpusShape& corpus,
         if (layout.rows() == 0) continue;
         shapes.push_back({static_cast<int64_t>(extents[i].size()),
                           static_cast<int64_t>(layout.pieces.size()),
-                          {layout.rows(), 3 * joints, 3 * std::min(principal_markers, joints)}});
+                          {layout.rows(), 3 * joints, 3 * std::min(principal_markers, joints),
+                           static_cast<double>(layout.rows()) / options.features.pose_rate}});
     }
     return shapes;
 }

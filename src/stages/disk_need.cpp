@@ -103,7 +103,7 @@ uint64_t motion_strings_bytes(const PartitionShape& partition) {
 /// write_pose_hierarchy.
 uint64_t pose_hierarchy_bytes(const HierarchyShape& shape, const PoseHierarchyOptions& options) {
     const HierarchySize& size = shape.size;
-    const int64_t leaves = expected_leaves(size.rows, options);
+    const int64_t leaves = expected_leaves(size, options);
     return Group()
         .rows(size.columns / 3, {name})
         .rows(size.principal, {index, index})
@@ -121,7 +121,7 @@ uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& optio
     const SignatureIndexOptions index_options;
     uint64_t bytes = 0;
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
-        const int64_t leaves = expected_leaves(shape.size.rows, options.pose_hierarchy);
+        const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         const int64_t runs = shape.size.rows / typical_run_frames + 1;
         // Those within reach are a quarter of the leaves of few takes.
         const int64_t near = leaves * std::min<int64_t>(leaves / 4, index_options.near_leaves);
@@ -229,7 +229,7 @@ DiskNeed hierarchy_checkpoints(const CorpusShape& corpus, const ReindexOptions& 
     DiskNeed need;
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
         const auto leaves =
-            static_cast<uint64_t>(expected_leaves(shape.size.rows, options.pose_hierarchy));
+            static_cast<uint64_t>(expected_leaves(shape.size, options.pose_hierarchy));
         need.bytes += 2 * leaves * leaf_bytes(shape.size, options.pose_hierarchy);
         need.inodes += 24;
     }

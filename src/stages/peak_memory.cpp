@@ -112,7 +112,7 @@ uint64_t hierarchy_bytes(const CorpusShape& corpus, const ReindexOptions& option
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
         const HierarchySize& size = shape.size;
         const auto share = static_cast<uint64_t>(size.rows / ranks) * sizeof(float);
-        const int64_t nodes = expected_leaves(size.rows, options.pose_hierarchy);
+        const int64_t nodes = expected_leaves(size, options.pose_hierarchy);
         largest =
             std::max(largest, growth_bytes(size, options.pose_hierarchy) +
                                   share * static_cast<uint64_t>(size.columns + size.principal) +
@@ -130,7 +130,7 @@ uint64_t signature_bytes(const CorpusShape& corpus, const ReindexOptions& option
     const SignatureIndexOptions index_options;
     uint64_t model = 0, indices = 0;
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
-        const int64_t leaves = expected_leaves(shape.size.rows, options.pose_hierarchy);
+        const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         model = std::max(model, 2 * static_cast<uint64_t>(leaves) *
                                     leaf_bytes(shape.size, options.pose_hierarchy));
         indices +=

@@ -15,13 +15,14 @@ constexpr uint64_t place_bytes = 8;
 
 }  // namespace
 
-int64_t expected_leaves(int64_t rows, const PoseHierarchyOptions& options) {
-    // Frames a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they grow
-    // with both.
-    constexpr double frames_per_leaf = 60;
-    const double frames = frames_per_leaf * std::pow(options.leaf_tolerance / 20, 1.75) *
-                          std::pow(options.dimension / 4.0, 1.7);
-    return std::max<int64_t>(1, std::llround(static_cast<double>(rows) / std::max(frames, 1.0)));
+int64_t expected_leaves(const HierarchySize& size, const PoseHierarchyOptions& options) {
+    // Seconds a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they grow
+    // with both. Frames between those that are there already make no more leaves.
+    constexpr double seconds_per_leaf = 0.6;
+    const double seconds = seconds_per_leaf * std::pow(options.leaf_tolerance / 20, 1.75) *
+                           std::pow(options.dimension / 4.0, 1.7);
+    const double leaves = size.seconds / std::max(seconds, 0.01);
+    return std::clamp<int64_t>(std::llround(leaves), 1, std::max<int64_t>(size.rows, 1));
 }
 
 uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& options) {
@@ -33,7 +34,7 @@ uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& optio
 uint64_t growth_bytes(const HierarchySize& size, const PoseHierarchyOptions& options) {
     // A level is held a second time while its checkpoint is written.
     constexpr double held = 1.5;
-    const auto leaves = static_cast<double>(expected_leaves(size.rows, options));
+    const auto leaves = static_cast<double>(expected_leaves(size, options));
     return static_cast<uint64_t>(size.rows) * place_bytes +
            static_cast<uint64_t>(held * leaves * static_cast<double>(leaf_bytes(size, options)));
 }

@@ -75,12 +75,12 @@ LoadItem strings_item(const PartitionShape& partition, const PoseRates& rates) {
 
 /// Levels, as long as nothing is grown: those of a balanced tree.
 double expected_levels(const HierarchyShape& shape, const PoseHierarchyOptions& options) {
-    return 1 + std::log2(static_cast<double>(expected_leaves(shape.size.rows, options)));
+    return 1 + std::log2(static_cast<double>(expected_leaves(shape.size, options)));
 }
 
 LoadItem hierarchy_item(const HierarchyShape& shape, const PoseHierarchyOptions& options,
                         const ShardRates& rates) {
-    const auto leaves = static_cast<double>(expected_leaves(shape.size.rows, options));
+    const auto leaves = static_cast<double>(expected_leaves(shape.size, options));
     LoadItem item;
     item.amount = shape.size.rows;
     item.pieces = shape.pieces;

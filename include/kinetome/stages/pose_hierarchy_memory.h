@@ -13,6 +13,7 @@ struct HierarchySize {
     int64_t rows = 0;
     int64_t columns = 0;    ///< f
     int64_t principal = 0;  ///< p
+    double seconds = 0;     ///< of motion that the rows are poses of
 };
 
 struct HierarchyMemory {
@@ -23,7 +24,7 @@ struct HierarchyMemory {
 
 /// Leaves as long as nothing is grown: of real motion, fewer for a wider tolerance and a higher
 /// dimension.
-int64_t expected_leaves(int64_t rows, const PoseHierarchyOptions& options);
+int64_t expected_leaves(const HierarchySize& size, const PoseHierarchyOptions& options);
 
 /// Bytes of a leaf: mean, basis, map and plane.
 uint64_t leaf_bytes(const HierarchySize& size, const PoseHierarchyOptions& options);
