@@ -123,8 +123,8 @@ uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& optio
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
         const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         const int64_t runs = shape.size.rows / typical_run_frames + 1;
-        // Those within reach are a quarter of the leaves of few takes.
-        const int64_t near = leaves * std::min<int64_t>(leaves / 4, index_options.near_leaves);
+        // Those within reach are some twelfth of the leaves of few takes.
+        const int64_t near = leaves * std::min<int64_t>(leaves / 12, index_options.near_leaves);
         bytes += Group()
                      .rows(1, {number, number})
                      .rows(shape.clips, {number, name, number, number, number, number})

@@ -16,8 +16,8 @@ constexpr uint64_t place_bytes = 8;
 }  // namespace
 
 int64_t expected_leaves(const HierarchySize& size, const PoseHierarchyOptions& options) {
-    // Seconds a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they grow
-    // with both. Frames between those that are there already make no more leaves.
+    // Seconds a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they
+    // grow with both. Frames between those that are there already make no more leaves.
     constexpr double seconds_per_leaf = 0.6;
     const double seconds = seconds_per_leaf * std::pow(options.leaf_tolerance / 20, 1.75) *
                            std::pow(options.dimension / 4.0, 1.7);

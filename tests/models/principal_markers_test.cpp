@@ -67,7 +67,7 @@ TEST_CASE("a wider tolerance needs fewer components and no more markers") {
     CHECK(coarse.markers.size() <= fine.markers.size());
 }
 
-TEST_CASE("poses that do not move have no principal markers; one without a place is named") {
+TEST_CASE("poses that do not move have no principal markers, and one without a place is named") {
     MatrixF poses = MatrixF::Constant(10, 9, 4);
     CHECK(select_principal_markers(moments_of(poses), {}).markers.empty());
     CHECK(select_principal_markers(moments_of(poses.topRows(1)), {}).columns.empty());

@@ -20,7 +20,8 @@ struct HierarchyEvaluationOptions {
 /// frames, takes or blocks; "all" for each of them. Throws UsageError for another word.
 std::vector<HeldOut> parse_held_out(const std::string& word);
 
-/// Of fewer than 14 takes the last is held out. A line a class, way of holding out and method: class,held_out,principal,leaves,trained,tested,
+/// Of fewer than 14 takes the last is held out. A line a class, way of holding out and method:
+/// class,held_out,principal,leaves,trained,tested,
 /// method,rms_mm,p95_mm,max_mm,to_linear,to_nearest; errors over estimated markers, the last two as
 /// multiples of the RMS of the linear map and of the nearest pose. Throws UsageError when there are
 /// too few takes to hold one out.
