@@ -83,8 +83,8 @@ TEST_CASE("on real takes, neither threads nor the size of shards change a digest
     const auto real = test_corpus();
     if (!real) return;
     const TemporaryFolder folder;
-    const std::vector<std::string> options = {"--clusters",       "40", "--max-iterations", "3",
-                                              "--leaf-tolerance", "60", "--corpus-graph",   "on"};
+    const std::vector<std::string> options = {"--clusters",       "40",  "--max-iterations", "3",
+                                              "--leaf-tolerance", "120", "--corpus-graph",   "on"};
     const auto digests = [&](const Way& way) {
         return digests_of(*real / "cmu", folder / (way.threads + "-" + way.shard_frames), way,
                           options);

@@ -13,7 +13,11 @@ std::string digests_of(const fs::path& corpus, const fs::path& store, int thread
         reindex(corpus, store,
                 {"--threads", std::to_string(threads), "--shard-frames",
                  std::to_string(shard_frames), "--partition", partition, "--clusters", "40",
-                 "--max-iterations", "3", "--leaf-tolerance", "60", "--corpus-graph", "on"});
+                 "--max-iterations", "3", "--leaf-tolerance", "120", "--corpus-graph", "on"});
+    // Nothing else depends on the partition.
+    if (partition == "none") {
+        words.insert(words.end(), {"--only", "frames,features,pose_clusters,motion_strings"});
+    }
     words.insert(words.begin(), KINETOME_PROGRAM);
     const CommandResult result = run(as_ranks(ranks, words));
     INFO(result.errors);
