@@ -266,6 +266,8 @@ enum StageNumber : size_t {
     pose_clusters_stage,
     strings_stage,
     pose_hierarchy_stage,
+    bundles_stage,
+    bundle_graph_stage,
     signatures_stage,
     neighbors_stage,
     segments_stage,
@@ -316,6 +318,8 @@ Rates measure(const Options& options) {
     rates.corpus_neighbors =
         shard_rates(corpus_neighbors_stage, 3 * searched.edges * crowding(searched.frames),
                     files * searched.frames * rates.search.nanoseconds_per_row * 1e-9);
+    rates.bundles = shard_rates(bundles_stage, frames);  // generated at the pose rate
+    rates.bundle_graph = shard_rates(bundle_graph_stage, frames);
     const double graph_frames = frames * features.effector_rate / 120.0;
     rates.segments = shard_rates(segments_stage, graph_frames);
     rates.primitives = shard_rates(primitives_stage, graph_frames);

@@ -2,6 +2,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "kinetome/base/parallel.h"
 #include "kinetome/models/pose_clusters.h"
@@ -49,6 +51,15 @@ AccessibilityMatrix::AccessibilityMatrix(int64_t letters)
       words_per_row_((letters + bits_per_word - 1) / bits_per_word),
       words_(static_cast<size_t>(letters * words_per_row_)) {
     for (int32_t a = 0; a < letters; ++a) set_in_row(a, a);
+}
+
+AccessibilityMatrix::AccessibilityMatrix(int64_t letters, std::vector<uint64_t> words)
+    : letters_(letters),
+      words_per_row_((letters + bits_per_word - 1) / bits_per_word),
+      words_(std::move(words)) {
+    if (static_cast<int64_t>(words_.size()) != letters_ * words_per_row_)
+        throw std::invalid_argument(
+            "the words of an accessibility matrix and its letters disagree");
 }
 
 void AccessibilityMatrix::set(int32_t a, int32_t b) {

@@ -222,4 +222,13 @@ bool goes_through_takes(std::string_view stage) {
     return stage == "segments" || stage == "primitives";
 }
 
+bool goes_through_bundles(std::string_view stage) {
+    return stage == "bundles" || stage == "bundle_graph";
+}
+
+int64_t expected_letters(int64_t rows) {
+    constexpr int64_t typical_frames_per_letter = 15;
+    return rows / typical_frames_per_letter + 1;
+}
+
 }  // namespace kinetome

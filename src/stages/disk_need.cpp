@@ -17,7 +17,6 @@ namespace kinetome {
 namespace {
 
 /// Of real motion, before it is known; the file is small beside the sharded ones.
-constexpr int64_t typical_frames_per_letter = 15;
 constexpr double typical_segment_seconds = 9, typical_primitive_seconds = 2.4;
 
 /// Bytes of datasets that are there once a class or a partition.
@@ -91,7 +90,7 @@ uint64_t pose_clusters_bytes(const PartitionShape& partition, const MixtureOptio
 uint64_t motion_strings_bytes(const PartitionShape& partition) {
     constexpr int64_t word_bits = 64;
     const int64_t clusters = partition.most_clusters();
-    const int64_t letters = partition.rows / typical_frames_per_letter + 1;
+    const int64_t letters = expected_letters(partition.rows);
     return Group()
         .rows(partition.clips, {number, name, number, number, number})
         .rows(letters, {index, number, index, index, number})
@@ -134,6 +133,32 @@ uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& optio
                      .bytes();
     }
     return bytes;
+}
+
+/// write_bundles and write_bundle_graph. Real and generated takes have much the same shares.
+uint64_t bundle_files_bytes(const std::string& stage, const CorpusShape& corpus,
+                            const std::vector<PartitionShape>& partitions) {
+    constexpr double members_per_letter = 0.31, bundles_per_letter = 0.16;
+    constexpr double nodes_per_letter = 0.07, edges_per_letter = 0.15;
+    int64_t letters = 0;
+    for (const PartitionShape& partition : partitions) letters += expected_letters(partition.rows);
+    const auto share = [=](double per_letter) {
+        return static_cast<int64_t>(per_letter * static_cast<double>(letters)) + 1;
+    };
+    const auto clips = static_cast<int64_t>(corpus.clips.size());
+    Group group;
+    if (stage == "bundles") {
+        group.rows(clips, {number, name, name, number, number, number});
+        group.rows(static_cast<int64_t>(partitions.size()), {2 * name}).rows(1, {number});
+        group.rows(share(bundles_per_letter), {index, index});
+        group.rows(share(members_per_letter), {index, number, index, index});
+    } else {
+        group.rows(share(bundles_per_letter), {index});
+        group.rows(share(nodes_per_letter), {index, number, index});
+        group.rows(share(edges_per_letter), {index, index, number, number});
+        group.rows(1, {number, number, number});
+    }
+    return group.bytes();
 }
 
 /// write_segments and write_primitives.
@@ -270,6 +295,9 @@ uint64_t artifact_bytes(const std::string& stage, const std::string& cut, const 
     if (stage_named(stage).sharded) return shard_bytes(stage, cut, corpus, options);
     if (goes_through_takes(stage)) return take_cuts_bytes(stage, corpus, options);
     if (stage == "signatures") return signatures_bytes(corpus, options);
+    if (goes_through_bundles(stage)) {
+        return bundle_files_bytes(stage, corpus, partition_shapes(corpus, options));
+    }
     uint64_t bytes = 0;
     if (stage == "pose_hierarchy") {
         for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {

@@ -10,6 +10,7 @@
 #include "kinetome/base/csv.h"
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
+#include "kinetome/stages/bundle_file.h"
 #include "kinetome/stages/pose_hierarchy_file.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/stages/signature_query.h"
@@ -126,6 +127,20 @@ Table letter_table(const Generation& generation) {
     return table;
 }
 
+Table bundle_table(const Generation& generation) {
+    Table table{{"bundle", "clip", "first", "end", "degenerate"}, {}};
+    const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
+    const std::vector<int32_t> heights = bundles.heights();
+    for (const BundleMember& member : bundles.members) {
+        const CutClip& clip = bundles.clips[static_cast<size_t>(member.frames.clip)];
+        table.rows.push_back({int64_t{member.bundle}, clip.name,
+                              source_boundary(clip, member.frames.first, bundles.pose_rate),
+                              source_boundary(clip, member.frames.end, bundles.pose_rate),
+                              int64_t{heights[static_cast<size_t>(member.bundle)] == 1}});
+    }
+    return table;
+}
+
 Table segment_table(const Generation& generation) {
     Table table{{"clip", "first", "end", "kind", "activity_cluster"}, {}};
     const ArtifactReader file = generation.open("segments.h5");
@@ -214,15 +229,17 @@ Table export_table(const OpenStore& open, std::string_view what,
     const Generation& generation = open.generation;
     if (what == "clips") return clip_table(generation);
     if (what == "letters") return letter_table(generation);
+    if (what == "bundles") return bundle_table(generation);
     if (what == "neighbors") return neighbor_table(generation);
     if (what == "segments") return segment_table(generation);
     if (what == "primitives") return primitive_table(open, labels);
     if (what == "hierarchy") return hierarchy_table(generation);
     if (what == "signatures") return signature_table(generation);
-    throw UsageError(fmt::format(
-        "cannot export '{}': there are clips, letters, hierarchy, neighbors, segments, primitives, "
-        "primitive-graph, signatures, timeline",
-        what));
+    throw UsageError(
+        fmt::format("cannot export '{}': there are clips, letters, bundles, bundle-graph, "
+                    "hierarchy, neighbors, segments, primitives, "
+                    "primitive-graph, signatures, timeline",
+                    what));
 }
 
 }  // namespace kinetome

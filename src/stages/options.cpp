@@ -124,6 +124,22 @@ OptionRow joint_list(std::string name, std::string stage, std::vector<JointRole>
             }};
 }
 
+OptionRow spread_option(std::string name, std::string stage, MotionBundleOptions& bundles) {
+    return {name,
+            std::move(stage),
+            OptionKind::text,
+            "how far the similarity of substrings is spread from one to others (closure|"
+            "closure-near|closure-length|depth:N)",
+            [&bundles] { return spread_text(bundles); },
+            [&bundles, name](const std::string& text) {
+                try {
+                    parse_spread(text, bundles);
+                } catch (const std::invalid_argument&) {
+                    refuse(name, text, "closure, closure-near, closure-length or depth:N");
+                }
+            }};
+}
+
 constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
                                         std::pair{"subject", PartitionRule::subject},
                                         std::pair{"auto", PartitionRule::automatic}};
@@ -239,6 +255,15 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
                "how a leaf's map to the other markers is found"),
         number("parent-weight", "pose_hierarchy", h.maps.parent_weight,
                "poses that the map of a node's parent counts as; marker-maps shrinkage"),
+        number("rho", "bundles", o.bundles.rho,
+               "above 1 prefers longer motion bundles, below 1 those with more members"),
+        number("gamma", "bundles", o.bundles.gamma,
+               "least ratio between the length of a member and its bundle's mean; 0: any"),
+        spread_option("spread", "bundles", o.bundles),
+        number("bundle-seed", "bundles", o.bundles.seed,
+               "of the instances at which bundles are sought"),
+        number("bundle-sweeps", "bundles", o.bundle_ends.sweeps,
+               "times that the frames at which members begin and end are gone through, at most"),
         number("radius", "neighbors", g.knn.radius, "frames no farther apart are neighbours, cm"),
         number("neighbours", "neighbors", g.knn.neighbours,
                "at most so many of each frame, itself among them, the nearest"),
@@ -286,8 +311,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
 
 ReindexOptions paper_options() {
     ReindexOptions options;
-    options.partition.rule = PartitionRule::none;  // S1 clusters each database as a whole
-    options.pose_hierarchy.overlap = 0.1;          // S2 §4, fuzzy partition
+    options.partition.rule = PartitionRule::none;    // S1 clusters each database as a whole
+    options.bundles.spread = BundleSpread::closure;  // S1 Eq. 5
+    options.pose_hierarchy.overlap = 0.1;            // S2 §4, fuzzy partition
     options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1
     options.neighbors.knn.radius = 64;                                // S3 §5
     options.activities.method = ActivityMethod::region_growing;       // S3 §3.1
@@ -381,6 +407,11 @@ void check_options(const ReindexOptions& o) {
             "leaf-dimension and leaf-tolerance must be above 0");
     require(o.pose_hierarchy.overlap >= 0 && o.pose_hierarchy.maps.parent_weight >= 0,
             "leaf-overlap and parent-weight must not be negative");
+    require(o.bundles.rho > 0, "rho must be above 0");
+    require(o.bundles.gamma >= 0 && o.bundles.gamma <= 1, "gamma must be in [0, 1]");
+    require(o.bundle_ends.sweeps >= 0, "bundle-sweeps must not be negative");
+    require(o.bundles.seed <= std::numeric_limits<int64_t>::max(),
+            fmt::format("bundle-seed must be at most {}", std::numeric_limits<int64_t>::max()));
     require(o.neighbors.knn.radius > 0, "radius must be above 0");
     require(o.neighbors.knn.neighbours > 0, "neighbours must be above 0");
     require(o.neighbors.stack_offset >= 0, "stack-offset must not be negative");

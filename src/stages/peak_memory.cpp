@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clip_pipeline.h"
+#include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/neighbor_graph.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/signature_index.h"
@@ -141,6 +142,26 @@ uint64_t signature_bytes(const CorpusShape& corpus, const ReindexOptions& option
     return model + indices + pipeline_bytes("signatures", corpus, options, resources);
 }
 
+/// A string, its accessibility and reach tables, poses at the ends of members; all members until
+/// the file is written.
+uint64_t bundle_bytes(const CorpusShape& corpus, const ReindexOptions& options,
+                      const Resources& resources) {
+    constexpr uint64_t bytes_per_letter = 256, table_bytes_per_letter = 2048;
+    uint64_t largest = 0, letters = 0;
+    for (const PartitionShape& partition : partition_shapes(corpus, options)) {
+        const auto here = static_cast<uint64_t>(expected_letters(partition.rows));
+        const uint64_t tables =
+            std::min(BundleResources().table_bytes,
+                     std::min(here * table_bytes_per_letter, resources.memory_bytes / 4));
+        const uint64_t poses = static_cast<uint64_t>(partition.rows) *
+                               bytes_of(static_cast<double>(partition.expected_components()));
+        largest = std::max(largest, here * bytes_per_letter + tables + poses +
+                                        2 * result_bytes("motion_strings", partition));
+        letters += here;
+    }
+    return largest + letters * sizeof(BundleMember);
+}
+
 }  // namespace
 
 uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
@@ -161,6 +182,7 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
         return std::min(at_rest + hierarchy_bytes(corpus, options, resources, ranks),
                         std::max(resources.memory_bytes, at_rest));
     }
+    if (goes_through_bundles(stage)) return at_rest + bundle_bytes(corpus, options, resources);
     const auto partitions = partition_shapes(corpus, options);
     std::vector<int64_t> rows;
     for (const PartitionShape& partition : partitions) rows.push_back(partition.rows);

@@ -85,9 +85,10 @@ class RatesFile {
     }
 
     Rates read() const {
-        require_known(table_, {"machine", "version", "threads", "frames", "features", "poses",
-                               "pose_hierarchy", "signatures", "neighbors", "corpus_neighbors",
-                               "search", "segments", "primitives"});
+        require_known(table_,
+                      {"machine", "version", "threads", "frames", "features", "poses", "bundles",
+                       "bundle_graph", "pose_hierarchy", "signatures", "neighbors",
+                       "corpus_neighbors", "search", "segments", "primitives"});
         Rates rates;
         rates.machine = table_["machine"].value_or(std::string());
         rates.version = table_["version"].value_or(std::string());
@@ -101,6 +102,8 @@ class RatesFile {
         rates.neighbors = section<ShardRates>(table_, "neighbors", shard_fields);
         rates.corpus_neighbors = section<ShardRates>(table_, "corpus_neighbors", shard_fields);
         rates.search = section<SearchRates>(table_, "search", search_fields);
+        rates.bundles = section<ShardRates>(table_, "bundles", shard_fields);
+        rates.bundle_graph = section<ShardRates>(table_, "bundle_graph", shard_fields);
         rates.segments = section<ShardRates>(table_, "segments", shard_fields);
         rates.primitives = section<ShardRates>(table_, "primitives", shard_fields);
         return rates;
@@ -222,6 +225,8 @@ std::string write_rates(const Rates& rates) {
     text += section_text("[neighbors]", rates.neighbors, shard_fields);
     text += section_text("[corpus_neighbors]", rates.corpus_neighbors, shard_fields);
     text += section_text("[search]", rates.search, search_fields);
+    text += section_text("[bundles]", rates.bundles, shard_fields);
+    text += section_text("[bundle_graph]", rates.bundle_graph, shard_fields);
     text += section_text("[segments]", rates.segments, shard_fields);
     text += section_text("[primitives]", rates.primitives, shard_fields);
     text += section_text("[poses]", rates.poses, pose_fields);

@@ -14,45 +14,12 @@ DatasetSpec spec(const char* path, ElementType type, const char* units, const ch
     return {std::string("/") + path, type, {}, units, description, source, "", {}};
 }
 
-/// Columns of the clips that a file is about.
+/// What a file tells of its clips.
 void write_clips(ArtifactWriter& file, const std::vector<CutClip>& clips, double rate) {
-    std::vector<int64_t> ids, frames, source_frames;
-    std::vector<std::string> names, classes;
-    std::vector<double> source_rates;
-    for (const CutClip& clip : clips) {
-        ids.push_back(clip_id(clip.name));
-        names.push_back(clip.name);
-        classes.push_back(clip.clip_class);
-        frames.push_back(clip.frames);
-        source_frames.push_back(clip.source_frames);
-        source_rates.push_back(clip.source_rate);
-    }
     file.write<double>(
         spec("effector_rate", ElementType::float64, "frames/s", "rate that frames count at"),
         std::span(&rate, 1));
-    file.write<int64_t>(spec("clips/id", ElementType::int64, "1", "clip id"), ids);
-    file.write_texts(spec("clips/name", ElementType::text, "1", "clip name"), names);
-    file.write_texts(spec("clips/class", ElementType::text, "1", "class of skeletons"), classes);
-    file.write<int64_t>(
-        spec("clips/frames", ElementType::int64, "frames", "frames at the effector rate"), frames);
-    file.write<int64_t>(
-        spec("clips/source_frames", ElementType::int64, "frames", "frames of the source"),
-        source_frames);
-    file.write<double>(
-        spec("clips/source_rate", ElementType::float64, "frames/s", "frame rate of the source"),
-        source_rates);
-}
-
-std::vector<CutClip> read_clips(const ArtifactReader& file) {
-    const auto names = file.read_texts("/clips/name"), classes = file.read_texts("/clips/class");
-    const auto frames = file.read<int64_t>("/clips/frames");
-    const auto source_frames = file.read<int64_t>("/clips/source_frames");
-    const auto source_rates = file.read<double>("/clips/source_rate");
-    std::vector<CutClip> clips;
-    for (size_t i = 0; i < names.size(); ++i) {
-        clips.push_back({names[i], classes[i], frames[i], source_frames[i], source_rates[i]});
-    }
-    return clips;
+    write_cut_clips(file, clips, "effector rate");
 }
 
 void move_to_source(RowRange& frames, const CutClip& clip, double effector_rate) {
@@ -69,6 +36,44 @@ std::map<int64_t, Clip*> by_id(std::vector<Clip>& clips) {
 }
 
 }  // namespace
+
+void write_cut_clips(ArtifactWriter& file, const std::vector<CutClip>& clips, const char* rate) {
+    std::vector<int64_t> ids, frames, source_frames;
+    std::vector<std::string> names, classes;
+    std::vector<double> source_rates;
+    for (const CutClip& clip : clips) {
+        ids.push_back(clip_id(clip.name));
+        names.push_back(clip.name);
+        classes.push_back(clip.clip_class);
+        frames.push_back(clip.frames);
+        source_frames.push_back(clip.source_frames);
+        source_rates.push_back(clip.source_rate);
+    }
+    const std::string frames_at = std::string("frames at the ") + rate;
+    file.write<int64_t>(spec("clips/id", ElementType::int64, "1", "clip id"), ids);
+    file.write_texts(spec("clips/name", ElementType::text, "1", "clip name"), names);
+    file.write_texts(spec("clips/class", ElementType::text, "1", "class of skeletons"), classes);
+    file.write<int64_t>(spec("clips/frames", ElementType::int64, "frames", frames_at.c_str()),
+                        frames);
+    file.write<int64_t>(
+        spec("clips/source_frames", ElementType::int64, "frames", "frames of the source"),
+        source_frames);
+    file.write<double>(
+        spec("clips/source_rate", ElementType::float64, "frames/s", "frame rate of the source"),
+        source_rates);
+}
+
+std::vector<CutClip> read_cut_clips(const ArtifactReader& file) {
+    const auto names = file.read_texts("/clips/name"), classes = file.read_texts("/clips/class");
+    const auto frames = file.read<int64_t>("/clips/frames");
+    const auto source_frames = file.read<int64_t>("/clips/source_frames");
+    const auto source_rates = file.read<double>("/clips/source_rate");
+    std::vector<CutClip> clips;
+    for (size_t i = 0; i < names.size(); ++i) {
+        clips.push_back({names[i], classes[i], frames[i], source_frames[i], source_rates[i]});
+    }
+    return clips;
+}
 
 void write_segments(ArtifactWriter& file, const std::vector<SegmentedClip>& clips, double rate) {
     std::vector<CutClip> cut;
@@ -102,7 +107,7 @@ void write_segments(ArtifactWriter& file, const std::vector<SegmentedClip>& clip
 
 std::vector<SegmentedClip> read_segments(const ArtifactReader& file) {
     std::vector<SegmentedClip> clips;
-    for (CutClip& clip : read_clips(file)) clips.push_back({std::move(clip), {}});
+    for (CutClip& clip : read_cut_clips(file)) clips.push_back({std::move(clip), {}});
     const auto place = by_id(clips);
     const auto ids = file.read<int64_t>("/segments/clip");
     const auto firsts = file.read<int32_t>("/segments/first_frame");
@@ -155,7 +160,7 @@ void write_primitives(ArtifactWriter& file, const std::vector<PrimitiveClip>& cl
 
 std::vector<PrimitiveClip> read_primitives(const ArtifactReader& file) {
     std::vector<PrimitiveClip> clips;
-    for (CutClip& clip : read_clips(file)) clips.push_back({std::move(clip), {}});
+    for (CutClip& clip : read_cut_clips(file)) clips.push_back({std::move(clip), {}});
     const auto place = by_id(clips);
     const auto ids = file.read<int64_t>("/primitives/clip");
     const auto firsts = file.read<int32_t>("/primitives/first_frame");
@@ -174,9 +179,9 @@ double effector_rate_of(const ArtifactReader& file) {
     return file.read<double>("/effector_rate").at(0);
 }
 
-int64_t source_boundary(const CutClip& clip, int64_t frame, double effector_rate) {
+int64_t source_boundary(const CutClip& clip, int64_t frame, double rate) {
     if (frame >= clip.frames) return clip.source_frames;
-    return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, effector_rate)));
+    return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, rate)));
 }
 
 std::vector<SegmentedClip> in_source(std::vector<SegmentedClip> clips, double effector_rate) {

@@ -45,6 +45,16 @@ serial_share = 0.1
 [search]
 nanoseconds_per_row = 300.0
 
+[bundles]
+seconds_per_file = 0.005
+nanoseconds_per_value = 3000.0
+serial_share = 0.8
+
+[bundle_graph]
+seconds_per_file = 0.005
+nanoseconds_per_value = 30.0
+serial_share = 1.0
+
 [segments]
 seconds_per_file = 0.005
 nanoseconds_per_value = 20000.0

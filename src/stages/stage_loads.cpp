@@ -95,6 +95,8 @@ LoadItem hierarchy_item(const HierarchyShape& shape, const PoseHierarchyOptions&
 const ShardRates& shard_rates(const std::string& stage, const Rates& rates) {
     if (stage == "frames") return rates.frames;
     if (stage == "segments") return rates.segments;
+    if (stage == "bundles") return rates.bundles;
+    if (stage == "bundle_graph") return rates.bundle_graph;
     if (stage == "primitives") return rates.primitives;
     if (stage == "signatures") return rates.signatures;
     if (stage == "features") return rates.features;
@@ -109,6 +111,21 @@ StageLoad load_of_takes(const ShardRates& each, const CorpusShape& corpus, doubl
         LoadItem item;
         item.amount = clip.frames_at(rate);
         item.seconds = static_cast<double>(item.amount) * each.nanoseconds_per_value * nanosecond;
+        load.items.push_back(item);
+    }
+    if (!load.items.empty()) load.items.front().fixed_seconds = each.seconds_per_file;
+    return load;
+}
+
+/// Each partition is the work of one rank.
+StageLoad load_of_bundles(const ShardRates& each, const std::vector<PartitionShape>& partitions) {
+    StageLoad load;
+    load.serial_share = each.serial_share;
+    for (const PartitionShape& partition : partitions) {
+        LoadItem item;
+        item.amount = partition.rows;
+        item.seconds =
+            static_cast<double>(partition.rows) * each.nanoseconds_per_value * nanosecond;
         load.items.push_back(item);
     }
     if (!load.items.empty()) load.items.front().fixed_seconds = each.seconds_per_file;
@@ -175,6 +192,9 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
     }
     if (stage == "signatures") {
         return load_of_takes(rates.signatures, corpus, options.features.pose_rate);
+    }
+    if (goes_through_bundles(stage)) {
+        return load_of_bundles(shard_rates(stage, rates), partition_shapes(corpus, options));
     }
     load.shares_items = true;
     if (stage == "pose_hierarchy") {

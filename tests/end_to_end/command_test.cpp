@@ -183,8 +183,8 @@ TEST_CASE("info tells what a store holds", "[commands]") {
     CHECK(contains(output, "2 indexed, 1 quarantined, 300 frames"));
     CHECK(contains(output, corpus.path().string()));
     for (const std::string stage :
-         {"frames", "features", "pose_clusters", "motion_strings", "pose_hierarchy", "signatures",
-          "neighbors", "segments", "primitives"}) {
+         {"frames", "features", "pose_clusters", "motion_strings", "bundles", "bundle_graph",
+          "pose_hierarchy", "signatures", "neighbors", "segments", "primitives"}) {
         CHECK(contains(output, "\n" + stage + " "));
     }
 }
@@ -234,7 +234,7 @@ TEST_CASE("diff tells options, files and content that differ, and nothing else",
         require_program({"diff", store.name(), first.substr(0, first.size() - 1), "current"})
             .output;
     CHECK(contains(output, "options:\n  tau: '0' → '2'\n"));
-    CHECK(contains(output, "files:\n  motion_strings.h5: option tau was 0, is 2\n"));
+    CHECK(contains(output, "  motion_strings.h5: option tau was 0, is 2\n"));
     CHECK(contains(output, "/all/tau: differs"));
     CHECK_FALSE(contains(output, "clips"));
     CHECK_FALSE(contains(output, "pose_clusters"));
@@ -287,7 +287,8 @@ TEST_CASE("the configuration that a generation keeps makes it again", "[commands
     const CommandResult changed =
         require_program({"reindex", corpus.path().string(), "--store", store.name(), "--config",
                          config, "--tau", "0.2"});
-    CHECK(RunLog(changed.errors).names_made() == std::set<std::string>{"motion_strings.h5"});
+    CHECK(RunLog(changed.errors).names_made() ==
+          std::set<std::string>{"motion_strings.h5", "bundles.h5", "bundle_graph.h5"});
 }
 
 TEST_CASE("compression alters files, and no digest", "[commands]") {

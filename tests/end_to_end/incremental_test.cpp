@@ -59,7 +59,9 @@ Names from_stage_on(const StoreOnDisk& store, const std::string& stage) {
         {"neighbors", {"segments"}},
         {"segments", {"primitives"}},
         {"pose_hierarchy", {"signatures"}},
-        {"pose_clusters", {"motion_strings"}}};
+        {"pose_clusters", {"motion_strings"}},
+        {"motion_strings", {"bundles"}},
+        {"bundles", {"bundle_graph"}}};
     Names names = store.artifacts(stage);
     const auto next = made_of.find(stage);
     if (next == made_of.end()) return names;
@@ -106,7 +108,7 @@ TEST_CASE("a new take alters one shard and what is made of all of them", "[incre
     CHECK(beginning_with(altered, "frames-").size() == 1);
     CHECK(beginning_with(altered, "features-").size() == 1);
     CHECK(beginning_with(altered, "neighbors-").size() == 1);
-    CHECK(altered.size() == 9);
+    CHECK(altered.size() == 11);
     CHECK(names_of(after) == names_of(before));
     const RunLog log(added.errors);
     CHECK(log.names_made() == altered);
@@ -169,6 +171,7 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
                     "option longest-submotion was 1.6666666666666667, is 1"},
              Change{"--leaf-tolerance", "25", "pose_hierarchy",
                     "option leaf-tolerance was 20, is 25"},
+             Change{"--spread", "closure", "bundles", "option spread was depth:1, is closure"},
              Change{"--radius", "60", "neighbors", "option radius was 72, is 60"},
              Change{"--method", "region-growing", "segments",
                     "option method was repetition, is region-growing"},
@@ -213,8 +216,8 @@ TEST_CASE("the option --only makes the stages it names, and says what is left ou
 
     const RunLog rest(require_program(reindex(corpus, store.path())).errors);
     Names left = store.artifacts("neighbors-");
-    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "pose_hierarchy.h5", "signatures.h5",
-                     "segments.h5", "primitives.h5"});
+    left.merge(Names{"motion_strings.h5", "pose_clusters.h5", "bundles.h5", "bundle_graph.h5",
+                     "pose_hierarchy.h5", "signatures.h5", "segments.h5", "primitives.h5"});
     CHECK(rest.names_made() == left);
     require_program(reindex(corpus, fresh.path()));
     CHECK(store.digests() == fresh.digests());

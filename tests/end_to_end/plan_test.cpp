@@ -249,6 +249,14 @@ nanoseconds_per_value = 0
 serial_share = 0
 [search]
 nanoseconds_per_row = 0
+[bundles]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
+[bundle_graph]
+seconds_per_file = 0
+nanoseconds_per_value = 0
+serial_share = 0
 [segments]
 seconds_per_file = 0
 nanoseconds_per_value = 0

@@ -98,8 +98,9 @@ TEST_CASE("killed while it clusters, a run goes on after its last iteration", "[
     CHECK_FALSE(contains(resumed.errors, "goes on after iteration 0"));
     const RunLog log(resumed.errors);
     std::set<std::string> rest = store.artifacts("neighbors-");
-    rest.merge(std::set<std::string>{"motion_strings.h5", "pose_clusters.h5", "pose_hierarchy.h5",
-                                     "signatures.h5", "segments.h5", "primitives.h5"});
+    rest.merge(std::set<std::string>{"motion_strings.h5", "pose_clusters.h5", "bundles.h5",
+                                     "bundle_graph.h5", "pose_hierarchy.h5", "signatures.h5",
+                                     "segments.h5", "primitives.h5"});
     CHECK(log.names_made() == rest);
     CHECK(contains(resumed.errors, "reused from the run in progress"));
     CHECK(store.digests() == whole.digests());

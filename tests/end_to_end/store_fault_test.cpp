@@ -260,7 +260,7 @@ TEST_CASE("any flipped bit of a generation is found by verify, naming the file",
             flip_bit(file, bit);
         }
     }
-    CHECK(files.size() == 13);
+    CHECK(files.size() == 15);
     CHECK(run_program({"verify", store.name()}).exit_code == 0);
 }
 

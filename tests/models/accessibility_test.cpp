@@ -72,3 +72,9 @@ TEST_CASE("a new accessibility matrix is the identity, and set is symmetric") {
     CHECK(AccessibilityMatrix().count() == 0);
     CHECK(accessibility(Mixture{}, 1, 2).count() == 0);
 }
+
+TEST_CASE("an accessibility matrix is what its words were") {
+    const AccessibilityMatrix matrix = accessibility(random_mixture(70, 3, 1), 2, 1);
+    CHECK(AccessibilityMatrix(70, matrix.words()) == matrix);
+    CHECK_THROWS_AS(AccessibilityMatrix(64, matrix.words()), std::invalid_argument);
+}

@@ -84,6 +84,9 @@ class AccessibilityMatrix {
     AccessibilityMatrix() = default;
     /// Every letter accessible from itself alone.
     explicit AccessibilityMatrix(int64_t letters);
+    /// What words() of a matrix of so many letters was. Throws std::invalid_argument when their
+    /// number disagrees.
+    AccessibilityMatrix(int64_t letters, std::vector<uint64_t> words);
 
     int64_t letters() const { return letters_; }
     int64_t words_per_row() const { return words_per_row_; }

@@ -33,6 +33,10 @@ double values_of_features(const ClassShape& shape, const FeatureOptions& options
 
 /// Whether a stage that makes one file works take by take, not by partitions of poses.
 bool goes_through_takes(std::string_view stage);
+/// Whether it works on the letters of a partition, which are few, not on its poses.
+bool goes_through_bundles(std::string_view stage);
+/// Letters of a partition's string, as long as nothing is spelled.
+int64_t expected_letters(int64_t rows);
 
 struct ClipShape {
     std::string name;

@@ -32,6 +32,10 @@ Table clip_table(const Generation& generation);
 /// clip,first,end,letter: frames at the source's rate, from 0, end exclusive.
 Table letter_table(const Generation& generation);
 
+/// bundle,clip,first,end,degenerate: frames at the source's rate, from 0, end exclusive; degenerate
+/// is 1 where the bundle has one member, else 0.
+Table bundle_table(const Generation& generation);
+
 /// clip,frame,neighbour,distance: frames at the source's rate, distance in cm.
 Table neighbor_table(const Generation& generation);
 

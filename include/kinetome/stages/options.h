@@ -15,6 +15,8 @@
 #include "kinetome/math/knn.h"
 #include "kinetome/models/activity.h"
 #include "kinetome/models/alternations.h"
+#include "kinetome/models/bundle_ends.h"
+#include "kinetome/models/bundle_options.h"
 #include "kinetome/models/hierarchy_growth.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/primitive.h"
@@ -69,6 +71,8 @@ struct ReindexOptions {
     StringOptions motion_strings;
     PrincipalMarkerOptions principal_markers;
     PoseHierarchyOptions pose_hierarchy;
+    MotionBundleOptions bundles;
+    BundleEndOptions bundle_ends;
     NeighborOptions neighbors;
     CorpusNeighborOptions corpus_neighbors;
     ActivityOptions activities;

@@ -55,8 +55,10 @@ struct Rates {
     ShardRates neighbors;         ///< a neighbour is two values
     ShardRates corpus_neighbors;  ///< a neighbour is three values, see crowding()
     SearchRates search;
-    ShardRates segments;    ///< of one file; a value is a frame at the effector rate
-    ShardRates primitives;  ///< likewise
+    ShardRates bundles;       ///< of one file; a value is a frame at the pose rate
+    ShardRates bundle_graph;  ///< likewise
+    ShardRates segments;      ///< of one file; a value is a frame at the effector rate
+    ShardRates primitives;    ///< likewise
 };
 
 /// For any κ: between the logarithms of those measured, beyond them in proportion to κ.

@@ -11,11 +11,12 @@
 
 namespace kinetome {
 
-/// A clip that was cut; frames of what it is cut into count at the effector rate.
+/// A clip that was cut; what it is cut into counts frames at a rate of its own: in these files the
+/// effector rate.
 struct CutClip {
     std::string name;
     std::string clip_class;
-    int64_t frames = 0;  ///< at the effector rate
+    int64_t frames = 0;  ///< at that rate
     int64_t source_frames = 0;
     double source_rate = 0;  ///< frames a second
 };
@@ -46,8 +47,13 @@ std::vector<PrimitiveClip> read_primitives(const ArtifactReader& file);
 /// Frames a second that frames count at, of either file.
 double effector_rate_of(const ArtifactReader& file);
 
-/// A boundary at the effector rate as a frame of the source: the first that lies at it or after it.
-int64_t source_boundary(const CutClip& clip, int64_t frame, double effector_rate);
+/// A boundary at the rate of `clip.frames` as a frame of the source: the first that lies at it or
+/// after it.
+int64_t source_boundary(const CutClip& clip, int64_t frame, double rate);
+
+/// What a file tells of the clips that it is about; `rate` names the rate of their frames.
+void write_cut_clips(ArtifactWriter& file, const std::vector<CutClip>& clips, const char* rate);
+std::vector<CutClip> read_cut_clips(const ArtifactReader& file);
 
 /// The same clips with frames of the source, as exports and evaluations list them: without segments
 /// and primitives that are so short that no frame of the source lies in them. Primitives go on

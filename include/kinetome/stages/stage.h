@@ -90,6 +90,8 @@ StageResult make_features(const StageContext& context, const StageTask& task);
 StageResult make_pose_clusters(const StageContext& context, const StageTask& task);
 StageResult make_motion_strings(const StageContext& context, const StageTask& task);
 StageResult make_pose_hierarchy(const StageContext& context, const StageTask& task);
+StageResult make_bundles(const StageContext& context, const StageTask& task);
+StageResult make_bundle_graph(const StageContext& context, const StageTask& task);
 StageResult make_neighbors(const StageContext& context, const StageTask& task);
 StageResult make_corpus_neighbors(const StageContext& context, const StageTask& task);
 StageResult make_segments(const StageContext& context, const StageTask& task);

@@ -1,0 +1,77 @@
+#include "kinetome/stages/partition_bundles.h"
+
+#include <algorithm>
+
+namespace kinetome {
+namespace {
+
+/// Poses of F(j) for every letter asked for, one after another. Letters are ascending; those of a
+/// clip are read together.
+MatrixF poses_of(const MotionString& string, std::span<const int32_t> letters, int64_t columns,
+                 const PoseReader& read) {
+    const auto first = [&](size_t i) {
+        return string.first_frame[static_cast<size_t>(letters[i])];
+    };
+    const auto end = [&](size_t i) { return string.end_frame[static_cast<size_t>(letters[i])]; };
+    const auto clip = [&](size_t i) { return string.clip[static_cast<size_t>(letters[i])]; };
+    Eigen::Index rows = 0;
+    for (size_t i = 0; i < letters.size(); ++i) rows += end(i) - first(i);
+    MatrixF poses(rows, columns);
+    Eigen::Index done = 0;
+    for (size_t i = 0; i < letters.size();) {
+        size_t next = i;
+        while (next < letters.size() && clip(next) == clip(i)) ++next;
+        const MatrixF of_clip = read(clip(i), first(i), end(next - 1));
+        const int32_t offset = first(i);
+        for (; i < next; ++i) {
+            const Eigen::Index count = end(i) - first(i);
+            poses.middleRows(done, count) = of_clip.middleRows(first(i) - offset, count);
+            done += count;
+        }
+    }
+    return poses;
+}
+
+}  // namespace
+
+PartitionBundles find_partition_bundles(const StoredMotionString& spelled, const Mixture& mixture,
+                                        const MotionBundleOptions& options,
+                                        const BundleEndOptions& ends,
+                                        const BundleResources& resources, const PoseReader& poses) {
+    const MotionString& string = spelled.string;
+    AccessibilityMatrix accessibility = spelled.accessibility;
+    if (options.spread == BundleSpread::closure_near) {
+        accessibility = within_step(accessibility, mixture, median_adjacent_step(string, mixture));
+    }
+    const auto bundles =
+        find_motion_bundles(string, accessibility, spelled.lambda, options, resources);
+    const auto letters = bundle_end_letters(bundles);
+    const BundleEnds found = find_bundle_ends(
+        string, bundles, letters, poses_of(string, letters, mixture.dimension(), poses), ends);
+    return {bundle_members(string, bundles, found.frames), static_cast<int32_t>(bundles.size()),
+            found.first_score, found.score};
+}
+
+void pack(Packer& out, const PartitionBundles& bundles) {
+    out.put(static_cast<uint64_t>(bundles.members.size()));
+    for (const BundleMember& member : bundles.members) {
+        out.put(member.bundle).put(member.frames.clip);
+        out.put(member.frames.first).put(member.frames.end);
+    }
+    out.put(bundles.bundles).put(bundles.first_score).put(bundles.end_score);
+}
+
+void unpack(Unpacker& in, PartitionBundles& bundles) {
+    bundles.members.resize(in.get<uint64_t>());
+    for (BundleMember& member : bundles.members) {
+        member.bundle = in.get<int32_t>();
+        member.frames.clip = in.get<int32_t>();
+        member.frames.first = in.get<int64_t>();
+        member.frames.end = in.get<int64_t>();
+    }
+    bundles.bundles = in.get<int32_t>();
+    bundles.first_score = in.get<double>();
+    bundles.end_score = in.get<double>();
+}
+
+}  // namespace kinetome
