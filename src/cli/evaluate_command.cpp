@@ -17,6 +17,7 @@
 #include "kinetome/stages/hierarchy_evaluation.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_evaluation.h"
+#include "kinetome/stages/stored_bundles.h"
 #include "kinetome/stages/stored_evaluation.h"
 
 namespace kinetome::cli {
@@ -38,9 +39,9 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
     app.add_option("--truth", flags.truth,
                    "annotated activities: clip,first,end,label,end_lo,end_hi");
     app.add_option("--what", flags.what,
-                   "segments, primitives, variance (inside clusters of primitives); recurrence (of "
-                   "poses), estimation or compression (by a pose hierarchy), which need no "
-                   "annotation")
+                   "segments, primitives, bundles, variance (inside clusters of primitives); "
+                   "recurrence (of poses), estimation or compression (by a pose hierarchy), which "
+                   "need no annotation")
         ->capture_default_str();
     app.add_option("--segments", flags.segments, "table as export segments writes it");
     app.add_option("--primitives", flags.primitives, "table as export primitives writes it");
@@ -82,10 +83,11 @@ bool is_one_of(const std::string& word, const std::set<std::string>& words) {
 }
 
 void check(const EvaluateFlags& flags) {
-    require(is_one_of(flags.what, {"segments", "primitives", "variance", "recurrence", "estimation",
-                                   "compression"}),
+    require(is_one_of(flags.what, {"segments", "primitives", "bundles", "variance", "recurrence",
+                                   "estimation", "compression"}),
             "--what " + flags.what +
-                ": expected segments, primitives, variance, recurrence, estimation or compression");
+                ": expected segments, primitives, bundles, variance, recurrence, estimation or "
+                "compression");
     require(is_one_of(flags.format, {"text", "csv", "json"}),
             "--format " + flags.format + ": expected text, csv or json");
     require(is_one_of(flags.peer, {"", "ppca"}), "--peer " + flags.peer + ": expected ppca");
@@ -222,6 +224,8 @@ std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
     Table table;
     if (is_about_hierarchy(flags)) {
         table = hierarchy_table(flags, input.generation(), workers);
+    } else if (flags.what == "bundles") {
+        table = bundle_score_table(stored_bundle_score(input.generation(), input.truth()));
     } else if (flags.what == "recurrence") {
         table = recurrence_table(stored_recurrence(input.generation()));
     } else if (flags.what == "primitives") {

@@ -8,6 +8,7 @@
 #include "kinetome/stages/export.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_walk.h"
+#include "kinetome/stages/stored_bundles.h"
 #include "kinetome/stages/stored_timeline.h"
 
 namespace kinetome::cli {
@@ -38,6 +39,15 @@ std::string exported(const ExportFlags& flags) {
                                         clip_source(open.generation), WalkOptions{}.longest_gap),
                            format);
     }
+    if (flags.what == "bundle-graph") {
+        const GraphFormat format = parse_graph_format(format_of(flags, "csv"));
+        const OpenStore open(flags.store, flags.generation);
+        const WalkOptions options = options_of_bundle_walk({});
+        return write_graph(
+            stored_graph(stored_bundle_members(open, flags.labels), clip_source(open.generation),
+                         options.longest_gap, options.style),
+            format);
+    }
     const TableFormat format = parse_table_format(format_of(flags, "csv"));
     const OpenStore open(flags.store, flags.generation);
     return write_table(export_table(open, flags.what, flags.labels), format);
@@ -53,15 +63,16 @@ Command export_command() {
             auto flags = std::make_shared<ExportFlags>();
             app.add_option("STORE", flags->store, "store to read")->required();
             app.add_option("WHAT", flags->what,
-                           "clips, letters, hierarchy, neighbors, segments, primitives, "
+                           "clips, letters, bundles, bundle-graph, hierarchy, neighbors, segments, "
+                           "primitives, "
                            "primitive-graph, signatures or timeline")
                 ->required();
+            app.add_option("--format", flags->format,
+                           "csv or json (default: csv); of graphs dot, too; of a timeline svg");
             app.add_option(
-                "--format", flags->format,
-                "csv or json (default: csv); of primitive-graph dot, too; of a timeline svg");
-            app.add_option("--labels", flags->labels,
-                           "of primitives and their graph: clip,first,end,label, such as `kinetome "
-                           "label` writes (default: STORE/labels.csv)");
+                "--labels", flags->labels,
+                "of primitives, bundles and their graphs: clip,first,end,label, such as `kinetome "
+                "label` writes (default: STORE/labels.csv)");
             app.add_option("-o,--output", flags->output,
                            "file to write (default: standard output)");
             app.add_option("--generation", flags->generation,

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
@@ -7,6 +9,7 @@
 #include "kinetome/formats/write_bvh.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_walk.h"
+#include "kinetome/stages/stored_bundles.h"
 
 namespace kinetome::cli {
 namespace {
@@ -17,6 +20,7 @@ struct WalkFlags {
     fs::path store, output, labels;
     std::string graph = "primitives", generation = "current";
     WalkOptions walk;
+    std::optional<double> fade;
 };
 
 enum class MotionFormat { bvh, amc };
@@ -87,13 +91,18 @@ void warn_of_early_end(const PrimitiveWalk& walk, const WalkOptions& options, co
 }
 
 ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
-    if (flags.graph != "primitives") {
-        throw UsageError(fmt::format("--graph {}: expected primitives", flags.graph));
+    if (flags.graph != "primitives" && flags.graph != "bundles") {
+        throw UsageError(fmt::format("--graph {}: expected primitives or bundles", flags.graph));
     }
     const MotionFormat format = format_of(flags.output);
     const OpenStore open(flags.store, flags.generation);
-    const PrimitiveWalk made = walk_primitives(stored_primitives(open, flags.labels),
-                                               clip_source(open.generation), flags.walk);
+    const bool bundles = flags.graph == "bundles";
+    WalkOptions options = flags.walk;
+    if (bundles) options = options_of_bundle_walk(options);
+    if (flags.fade) options.fade_seconds = *flags.fade;
+    const PrimitiveWalk made = walk_primitives(
+        bundles ? stored_bundle_members(open, flags.labels) : stored_primitives(open, flags.labels),
+        clip_source(open.generation), options);
     if (format == MotionFormat::bvh) {
         write_file_atomically(flags.output, write_bvh(made.motion));
     } else {
@@ -108,7 +117,7 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
 
 Command walk_command() {
     return {
-        "walk", "put a new motion together from the primitives of a store",
+        "walk", "put a new motion together from the primitives or the bundles of a store",
         "kinetome walk motion.store --graph primitives --seconds 30 --seed 1 --from walk "
         "-o walk.bvh",
         [](CLI::App& app) -> Run {
@@ -118,19 +127,21 @@ Command walk_command() {
             app.add_option("-o,--output", flags->output,
                            "file to write: .bvh, or .amc with its .asf beside it")
                 ->required();
-            app.add_option("--graph", flags->graph, "what the walk leads through: primitives")
+            app.add_option("--graph", flags->graph,
+                           "what the walk leads through: primitives or bundles")
                 ->capture_default_str();
             app.add_option("--seconds", options.seconds, "wanted length")->capture_default_str();
             app.add_option("--seed", options.seed, "the same seed walks the same way")
                 ->capture_default_str();
-            app.add_option("--from", options.from, "label or cluster to begin with");
-            app.add_option("--to", options.to, "label or cluster to end with");
-            app.add_option("--labels", flags->labels,
-                           "of primitives: clip,first,end,label, such as `kinetome label` writes "
-                           "(default: STORE/labels.csv)");
-            app.add_option("--fade", options.fade_seconds,
-                           "seconds that going over from one primitive to another takes at most")
-                ->capture_default_str();
+            app.add_option("--from", options.from, "label, cluster or bundle to begin with");
+            app.add_option("--to", options.to, "label, cluster or bundle to end with");
+            app.add_option(
+                "--labels", flags->labels,
+                "of what the walk leads through: clip,first,end,label, such as `kinetome "
+                "label` writes (default: STORE/labels.csv)");
+            app.add_option("--fade", flags->fade,
+                           "seconds that going over from one piece of a node to another takes at "
+                           "most (default: 0.4 of primitives, as long as both last of bundles)");
             app.add_option("--body", options.body,
                            "clip whose skeleton moves (default: the first of the walk)");
             app.add_option("--generation", flags->generation,

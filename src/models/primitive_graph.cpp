@@ -75,8 +75,8 @@ std::vector<int32_t> PrimitiveGraph::nodes_named(std::string_view label_or_clust
 std::string PrimitiveGraph::name_of(int32_t node) const {
     const std::string& label = label_of[static_cast<size_t>(node)];
     const int32_t cluster = cluster_of[static_cast<size_t>(node)];
-    if (cluster < 0) return label.empty() ? "a primitive of no cluster" : label;
-    const std::string number = "cluster " + std::to_string(cluster);
+    if (cluster < 0) return label.empty() ? "a " + style.piece + " of no " + style.group : label;
+    const std::string number = style.group + " " + std::to_string(cluster);
     return label.empty() ? number : label + " (" + number + ")";
 }
 

@@ -51,8 +51,9 @@ std::vector<int32_t> require_nodes(const PrimitiveGraph& primitives, const char*
     if (name.empty()) return {};
     auto nodes = primitives.nodes_named(name);
     if (nodes.empty()) {
-        throw UsageError(fmt::format("{} {}: no primitive has this label or cluster; there are {}",
-                                     option, quote_for_message(name),
+        const GraphStyle& style = primitives.style;
+        throw UsageError(fmt::format("{} {}: no {} has this label or {}; there are {}", option,
+                                     quote_for_message(name), style.piece, style.group,
                                      listed(primitives, all_nodes(primitives))));
     }
     return nodes;
@@ -114,10 +115,10 @@ class ClipsOfOneBody {
         const std::string body_class = source.kind(body).clip_class;
         const std::string clip_class = source.kind(graph.clips.front()).clip_class;
         if (body_class != clip_class) {
-            throw UsageError(
-                fmt::format("--body {}: it is of class {}, the walk's primitives of "
-                            "class {}; name a clip of that class",
-                            quote_for_message(body), body_class, clip_class));
+            throw UsageError(fmt::format(
+                "--body {}: it is of class {}, the walk's {}s of class {}; name a "
+                "clip of that class",
+                quote_for_message(body), body_class, graph.nodes.style.piece, clip_class));
         }
         skeleton_ = source.read(body).skeleton;
     }
@@ -179,8 +180,8 @@ std::vector<MotionRun> runs_of(const MotionGraph& graph, const GraphWalk& walk,
 PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
                               const ClipSource& source, const WalkOptions& options) {
     check(options);
-    const StoredGraph graph =
-        stored_graph(of_one_class(primitives, source, options.from), source, options.longest_gap);
+    const StoredGraph graph = stored_graph(of_one_class(primitives, source, options.from), source,
+                                           options.longest_gap, options.style);
     const MotionGraph& pieces = graph.nodes.graph;
     const auto from = require_nodes(graph.nodes, "--from", options.from);
     const auto to = require_nodes(graph.nodes, "--to", options.to);

@@ -96,13 +96,29 @@ std::string dot_text(std::string_view text) {
     return quoted + '"';
 }
 
+/// Inches: two a second of the mean length, half of one for the first piece.
+std::string box_size(const StoredGraph& graph, int32_t node) {
+    const auto members = graph.nodes.graph.members(node);
+    double frames = 0;
+    for (const int32_t piece : members) {
+        frames += static_cast<double>(graph.nodes.graph.piece(piece).frames());
+    }
+    const auto count = static_cast<double>(members.size());
+    return fmt::format(", fixedsize=true, width={:.2f}, height={:.2f}",
+                       2 * frames / count / graph.rate, std::sqrt(count) / 2);
+}
+
 std::string write_dot(const StoredGraph& graph) {
-    std::string text = "digraph primitives {\n  node [shape=box];\n";
+    const GraphStyle& style = graph.nodes.style;
+    std::string text = fmt::format("digraph {}s {{\n  node [shape=box];\n",
+                                   style.boxes_by_size ? style.group : style.piece);
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
         const auto members = graph.nodes.graph.members(node);
-        const std::string caption = fmt::format("{}: {} primitive{}", graph.nodes.name_of(node),
-                                                members.size(), members.size() == 1 ? "" : "s");
-        fmt::format_to(std::back_inserter(text), "  n{} [label={}];\n", node, dot_text(caption));
+        const std::string caption =
+            fmt::format("{}: {} {}{}", graph.nodes.name_of(node), members.size(), style.piece,
+                        members.size() == 1 ? "" : "s");
+        fmt::format_to(std::back_inserter(text), "  n{} [label={}{}];\n", node, dot_text(caption),
+                       style.boxes_by_size ? box_size(graph, node) : "");
     }
     for_each_edge(graph.nodes.graph, [&](int32_t from, int32_t to, const auto& successions) {
         fmt::format_to(std::back_inserter(text), "  n{} -> n{} [label={}];\n", from, to,
@@ -114,9 +130,10 @@ std::string write_dot(const StoredGraph& graph) {
 }  // namespace
 
 StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
-                         double longest_gap) {
+                         double longest_gap, const GraphStyle& style) {
     if (primitives.empty()) {
-        throw UsageError("the store has no primitives: nothing in its takes recurs");
+        throw UsageError(
+            fmt::format("the store has no {}s: nothing in its takes recurs", style.piece));
     }
     StoredGraph graph;
     std::map<std::string, int32_t> numbers;
@@ -143,6 +160,7 @@ StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource
     }
     graph.nodes = primitive_graph(std::move(pieces), clusters, labels,
                                   std::llround(longest_gap * graph.rate));
+    graph.nodes.style = style;
     graph.primitives = std::move(primitives);
     return graph;
 }

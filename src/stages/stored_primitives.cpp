@@ -29,6 +29,15 @@ void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<
     }
 }
 
+void label_from_table(std::vector<ClipPrimitive>& primitives, const OpenStore& open,
+                      const std::filesystem::path& labels) {
+    const std::filesystem::path own = open.store.path() / "labels.csv";
+    const std::filesystem::path& table = labels.empty() ? own : labels;
+    if (!labels.empty() || std::filesystem::exists(own)) {
+        label_primitives(primitives, parse_labels_csv(read_source_file(table), table.string()));
+    }
+}
+
 std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
                                              const std::filesystem::path& labels) {
     if (!open.generation.ledger().find("primitives.h5")) {
@@ -48,11 +57,7 @@ std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
                                   .cluster = stored.cluster});
         }
     }
-    const std::filesystem::path own = open.store.path() / "labels.csv";
-    const std::filesystem::path& table = labels.empty() ? own : labels;
-    if (!labels.empty() || std::filesystem::exists(own)) {
-        label_primitives(primitives, parse_labels_csv(read_source_file(table), table.string()));
-    }
+    label_from_table(primitives, open, labels);
     return primitives;
 }
 

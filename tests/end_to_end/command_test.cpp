@@ -234,7 +234,7 @@ TEST_CASE("diff tells options, files and content that differ, and nothing else",
         require_program({"diff", store.name(), first.substr(0, first.size() - 1), "current"})
             .output;
     CHECK(contains(output, "options:\n  tau: '0' → '2'\n"));
-    CHECK(contains(output, "  motion_strings.h5: option tau was 0, is 2\n"));
+    CHECK(contains(output, "files:\n  motion_strings.h5: option tau was 0, is 2\n"));
     CHECK(contains(output, "/all/tau: differs"));
     CHECK_FALSE(contains(output, "clips"));
     CHECK_FALSE(contains(output, "pose_clusters"));

@@ -17,7 +17,9 @@ struct LabelledStore {
     LabelledStore() {
         generate_corpus(folder / "takes", 24000, 2);
         require_program(reindex(folder / "takes", path,
-                                {"--only", "frames,features,neighbors,segments,primitives"}));
+                                {"--only",
+                                 "frames,features,pose_clusters,motion_strings,bundles,"
+                                 "bundle_graph,neighbors,segments,primitives"}));
         fs::copy_file(folder / "takes" / "cycles.csv", fs::path(path) / "labels.csv");
     }
     std::string output(const std::string& name) const { return (folder / name).string(); }
@@ -64,7 +66,7 @@ TEST_CASE("a walk is written as BVH and as AMC with its skeleton, the same for t
                    "01.asf is the skeleton of something else"));
     CHECK(contains(require_program(walk("walk.txt"), usage).errors, ".bvh or .amc"));
     CHECK(contains(require_program(walk("w.bvh", {"--graph", "letters"}), usage).errors,
-                   "expected primitives"));
+                   "expected primitives or bundles"));
     CHECK(contains(require_program(walk("w.bvh", {"--from", "swimming"}), usage).errors,
                    "no primitive has this label or cluster"));
     CHECK(contains(require_program(walk("w.bvh", {"--body", "nobody"}), usage).errors,
@@ -130,6 +132,52 @@ TEST_CASE("labels of some takes spread to others, and lead walks from then on", 
                         bad_data)
             .errors,
         "bad.csv:1: expected a header line that begins with clip,first,end,label"));
+}
+
+TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated", "[walk]") {
+    const LabelledStore store;
+    const auto walk = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = {"walk",    store.path,           "--graph",
+                                          "bundles", "--seconds",          "10",
+                                          "-o",      store.output("b.bvh")};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const CommandResult walked = require_program(walk({}));
+    CHECK(contains(walked.output, "1200 frames at 120 a second"));
+    CHECK(contains(walked.output, "foot slide"));
+    CHECK(contains(walked.output, "bundle "));
+    const std::string bvh = text_of(store.output("b.bvh"));
+    require_program(walk({"--threads", "1"}));
+    CHECK(text_of(store.output("b.bvh")) == bvh);
+    CHECK(contains(require_program(walk({"--from", "swimming"}), usage).errors,
+                   "no member has this label or bundle"));
+
+    const auto rows = lines_of(require_program({"export", store.path, "bundles"}).output);
+    CHECK(rows.front() == "bundle,clip,first,end,degenerate");
+    CHECK(rows.size() > 20);
+    const std::string dot =
+        require_program({"export", store.path, "bundle-graph", "--format", "dot"}).output;
+    CHECK(dot.starts_with("digraph bundles {"));
+    CHECK(contains(dot, "fixedsize=true, width="));
+
+    const auto score =
+        lines_of(require_program({"evaluate", store.path, "--what", "bundles", "--truth",
+                                  store.output("takes/truth.csv"), "--format", "csv"})
+                     .output);
+    CHECK(score.front() == "bundles,purity,shuffled,chance,coverage,mean_height,median_width");
+    CHECK(score.size() == 2);
+}
+
+TEST_CASE("a store without bundles says what makes them", "[walk]") {
+    const TemporaryFolder folder;
+    generate_corpus(folder / "takes", 2400, 1);
+    const std::string store = (folder / "store").string();
+    require_program(reindex(folder / "takes", store, {"--only", "frames"}));
+    const std::string output = (folder / "walk.bvh").string();
+    CHECK(
+        contains(require_program({"walk", store, "--graph", "bundles", "-o", output}, usage).errors,
+                 "no motion bundles yet; kinetome reindex"));
 }
 
 TEST_CASE("a store without primitives says what makes them", "[walk]") {

@@ -11,12 +11,20 @@
 
 namespace kinetome {
 
+/// How a graph speaks of what it holds, and draws it.
+struct GraphStyle {
+    std::string piece = "primitive", group = "cluster";
+    /// Nodes as wide as their mean length, as high as the root of their number of pieces (S1 §4).
+    bool boxes_by_size = false;
+};
+
 struct PrimitiveGraph {
     MotionGraph graph;                ///< its pieces are the primitives, in the order given
     std::vector<int32_t> cluster_of;  ///< by node; -1: a primitive like no other, alone in its node
     /// By node: the label that most of its primitives have, of equally many the first by alphabet;
     /// "" when none has one.
     std::vector<std::string> label_of;
+    GraphStyle style = {};
 
     /// Nodes of that label, else of the cluster of that number, ascending.
     std::vector<int32_t> nodes_named(std::string_view label_or_cluster) const;

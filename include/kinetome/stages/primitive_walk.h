@@ -1,4 +1,4 @@
-// Walks through the primitives of a store (S3 §6.2).
+// Walks through the primitives of a store (S3 §6.2), or through its motion bundles (S1 §4).
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@ struct WalkOptions {
     double fade_seconds = 0.4;  ///< that going over from one primitive to another takes at most
     double longest_gap = 2;     ///< seconds between two primitives of which one follows the other
     std::string body = {};      ///< clip whose skeleton moves; "": the first clip of the walk
+    GraphStyle style = {};      ///< how the graph's pieces are called
 };
 
 struct PrimitiveWalk {

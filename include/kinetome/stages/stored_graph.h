@@ -46,16 +46,20 @@ struct StoredGraph {
 /// `longest_gap`: seconds between two primitives of which one follows the other. Throws what
 /// source.kind does, and UsageError when there are no primitives.
 StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
-                         double longest_gap);
+                         double longest_gap, const GraphStyle& style = {});
 
 /// Gives each primitive the label that covers most of its frames, of equal ones the first by
 /// alphabet, where it covers at least half of them; the others keep theirs. Rows are in frames of
 /// the sources.
 void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<CycleRow>& labels);
 
-/// All primitives of a generation, in the order of clips and frames, with the labels of a table
-/// (parse_labels_csv): that of the file, or the store's labels.csv where there is one. Throws
-/// UsageError when the generation has no primitives, InputError for a table that cannot be read.
+/// Labels of a table (parse_labels_csv): that of the file, or the store's labels.csv where there is
+/// one. Throws InputError for a table that cannot be read.
+void label_from_table(std::vector<ClipPrimitive>& primitives, const OpenStore& open,
+                      const std::filesystem::path& labels);
+
+/// All primitives of a generation, in the order of clips and frames, labelled (label_from_table).
+/// Throws UsageError when the generation has no primitives.
 std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
                                              const std::filesystem::path& labels = {});
 

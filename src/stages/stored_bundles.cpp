@@ -1,0 +1,87 @@
+#include "kinetome/stages/stored_bundles.h"
+
+#include <algorithm>
+#include <map>
+
+#include "kinetome/base/error.h"
+#include "kinetome/stages/bundle_file.h"
+
+namespace kinetome {
+
+namespace {
+
+/// Members of nodes, at the sources' rates.
+std::vector<ClipPrimitive> node_members(const Generation& generation) {
+    if (!generation.ledger().find("bundle_graph.h5")) {
+        throw UsageError(
+            "the store has no motion bundles yet; kinetome reindex CORPUS --store STORE makes "
+            "them");
+    }
+    const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
+    const auto node_of = read_bundle_graph(generation.open("bundle_graph.h5"), bundles).node_of;
+    std::vector<ClipPrimitive> members;
+    for (const BundleMember& member : bundles.members) {
+        const int32_t node = node_of[static_cast<size_t>(member.bundle)];
+        if (node < 0) continue;
+        const CutClip& clip = bundles.clips[static_cast<size_t>(member.frames.clip)];
+        const ClipPrimitive piece{
+            .clip = clip.name,
+            .first = source_boundary(clip, member.frames.first, bundles.pose_rate),
+            .end = source_boundary(clip, member.frames.end, bundles.pose_rate),
+            .cluster = node};
+        if (piece.first < piece.end) members.push_back(piece);  // else shorter than a source frame
+    }
+    return members;
+}
+
+}  // namespace
+
+std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
+                                                 const std::filesystem::path& labels) {
+    std::vector<ClipPrimitive> members = node_members(open.generation);
+    label_from_table(members, open, labels);
+    return members;
+}
+
+BundleScore stored_bundle_score(const Generation& generation, std::span<const TruthRow> truth) {
+    std::map<std::string, int32_t> clip_numbers, class_numbers;
+    std::vector<FrameClasses> classes;
+    for (const CatalogClip& clip : generation.catalog().clips) {
+        if (!clip.indexed()) continue;
+        clip_numbers[clip.name] = static_cast<int32_t>(classes.size());
+        classes.emplace_back();
+        for (const TruthRow& row : truth) {
+            if (row.clip != clip.name) continue;
+            FrameClasses& labels = classes.back();
+            labels.resize(static_cast<size_t>(clip.frames), no_class);
+            const auto next = static_cast<int32_t>(class_numbers.size());
+            const int32_t label = class_numbers.try_emplace(row.label, next).first->second;
+            for (int64_t frame = row.first; frame < std::min(row.end, clip.frames); ++frame)
+                labels[static_cast<size_t>(frame)] = label;
+        }
+    }
+    if (class_numbers.empty()) throw UsageError("none of the annotated takes is in the store");
+    std::vector<MotionPiece> members;
+    std::vector<int32_t> bundle_of;
+    for (const ClipPrimitive& member : node_members(generation)) {
+        members.push_back({clip_numbers.at(member.clip), member.first, member.end});
+        bundle_of.push_back(member.cluster);
+    }
+    return score_bundles(members, bundle_of, classes);
+}
+
+Table bundle_score_table(const BundleScore& score) {
+    return {{"bundles", "purity", "shuffled", "chance", "coverage", "mean_height", "median_width"},
+            {{score.bundles, score.purity, score.shuffled, score.chance, score.coverage,
+              score.mean_height, score.median_width}}};
+}
+
+WalkOptions options_of_bundle_walk(WalkOptions options) {
+    constexpr double longer_than_any_take = 1e6;  // seconds
+    options.fade_seconds = longer_than_any_take;
+    options.longest_gap = longer_than_any_take;
+    options.style = {.piece = "member", .group = "bundle", .boxes_by_size = true};
+    return options;
+}
+
+}  // namespace kinetome
