@@ -1,0 +1,161 @@
+// Are bundles of different bodies linked where they hold the same activity, and nowhere else?
+//
+//   bundle_links_bench [--frames N] [--subjects N] [--seeds N...] [--reach R] [--threads N]
+//       Generated corpora, one a seed. A bundle has a label when it fills 0.9 of its frames; it
+//       counts when another subject has a bundle of that label.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cost.h"
+#include "generated_corpus.h"
+#include "kinetome/features/grounded_points.h"
+#include "kinetome/models/bundle_links.h"
+#include "kinetome/models/motion_bundle.h"
+#include "kinetome/models/retarget.h"
+#include "spelled_takes.h"
+
+namespace {
+
+using namespace kinetome;
+
+struct Options {
+    int64_t frames = 40'000, subjects = 4;
+    std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
+    int threads = 2;
+    BundleLinkOptions links;
+};
+
+constexpr double labelled_share = 0.9;
+constexpr auto row_frames = static_cast<int64_t>(bench::pose_rate / bundle_link_rate);
+
+/// Bundles of all subjects, each found among the takes of its own.
+struct SubjectBundles {
+    MatrixF rows;
+    std::vector<RowRange> clips;
+    std::vector<int32_t> subject_of_clip;
+    std::vector<BundleMember> members;  ///< in rows
+    std::vector<int32_t> subject_of, label_of;
+};
+
+/// The label that fills enough of a bundle.
+int32_t label_of(const MotionString& string, const SubstringBundle& bundle,
+                 std::span<const FrameClasses> classes) {
+    std::map<int32_t, int64_t> counts;
+    int64_t frames = 0;
+    for (const Substring& member : bundle.members) {
+        const auto clip = static_cast<size_t>(string.clip[static_cast<size_t>(member.first)]);
+        const auto end = std::lround(string.mean_frame(member.last));
+        for (auto frame = std::lround(string.mean_frame(member.first)); frame < end; ++frame) {
+            ++counts[classes[clip][static_cast<size_t>(frame)]];
+            ++frames;
+        }
+    }
+    for (const auto& [label, count] : counts) {
+        if (double(count) >= labelled_share * double(frames)) return label;
+    }
+    return no_class;
+}
+
+/// Bundles of takes [begin, end), which are of one subject.
+void add_subject(const bench::GeneratedCorpus& corpus, size_t begin, size_t end, int32_t subject,
+                 int threads, SubjectBundles& all) {
+    const std::vector<Clip> clips(corpus.clips.begin() + std::ptrdiff_t(begin),
+                                  corpus.clips.begin() + std::ptrdiff_t(end));
+    const std::vector<std::string> names(clips.size());
+    const bench::SpelledTakes takes(bench::PoseTakes::of_clips(names, clips), {}, threads);
+    const MotionString& string = takes.string;
+    for (const Clip& clip : clips) {
+        const Clip slow = resample(clip, bundle_link_rate);
+        const MatrixF points = grounded_points(*slow.skeleton, slow.motion, joint_positions(slow),
+                                               bundle_link_offset) /
+                               static_cast<float>(leg_length(*slow.skeleton));
+        const int64_t first = all.rows.rows();
+        all.rows.conservativeResize(first + points.rows(), points.cols());
+        all.rows.bottomRows(points.rows()) = points;
+        all.clips.push_back({first, first + points.rows()});
+        all.subject_of_clip.push_back(subject);
+    }
+    const auto bundles =
+        find_motion_bundles(string, accessibility(takes.mixture, takes.tau, threads), takes.lambda,
+                            {}, {.threads = threads});
+    for (const SubstringBundle& bundle : bundles) {
+        if (bundle.is_degenerate()) break;
+        const auto number = static_cast<int32_t>(all.subject_of.size());
+        for (const Substring& member : bundle.members) {
+            const auto clip = int32_t(begin) + string.clip[static_cast<size_t>(member.first)];
+            const auto row = [&](int32_t letter) {
+                return std::lround(string.mean_frame(letter)) / row_frames;
+            };
+            const int64_t rows = all.clips[static_cast<size_t>(clip)].size();
+            const int64_t first = std::min(row(member.first), rows - 1);
+            all.members.push_back(
+                {number, {clip, first, std::clamp(row(member.last) + 1, first + 1, rows)}});
+        }
+        all.subject_of.push_back(subject);
+        all.label_of.push_back(label_of(string, bundle, std::span(corpus.classes).subspan(begin)));
+    }
+}
+
+void judge(const Options& options, uint64_t seed) {
+    const bench::GeneratedCorpus corpus(options.frames, options.subjects, seed, options.threads);
+    SubjectBundles all;
+    for (size_t begin = 0, end = 0; begin < corpus.plans.size(); begin = end) {
+        while (end < corpus.plans.size() &&
+               corpus.plans[end].subject == corpus.plans[begin].subject) {
+            ++end;
+        }
+        add_subject(corpus, begin, end, int32_t(corpus.plans[begin].subject), options.threads, all);
+    }
+    BundleLinks links;
+    const bench::Cost cost = bench::cost_of([&] {
+        links = link_bundles(all.rows, all.clips, all.members, all.subject_of_clip, options.links,
+                             options.threads);
+    });
+    std::map<int32_t, std::set<int32_t>> subjects_with;
+    for (size_t b = 0; b < all.subject_of.size(); ++b)
+        subjects_with[all.label_of[b]].insert(all.subject_of[b]);
+    std::set<int32_t> linked;
+    int64_t different = 0;
+    for (const BundleLink& link : links.links) {
+        const int32_t a = all.label_of[size_t(link.first)], b = all.label_of[size_t(link.second)];
+        if (a == no_class || b == no_class) continue;
+        if (a == b) linked.insert({link.first, link.second});
+        different += a != b;
+    }
+    int64_t counted = 0;
+    for (const int32_t label : all.label_of)
+        counted += label != no_class && subjects_with[label].size() > 1;
+    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>7.3f} {:>9} {:>7.1f}\n", seed,
+               all.subject_of.size(), counted, links.usual_cost, links.links.size(),
+               double(linked.size()) / double(counted), different, cost.cpu);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        CLI::App app("links between bundles of different bodies");
+        Options options;
+        app.add_option("--frames", options.frames, "of each corpus");
+        app.add_option("--subjects", options.subjects);
+        app.add_option("--seeds", options.seeds, "of the corpora");
+        app.add_option("--reach", options.links.reach);
+        app.add_option("--threads", options.threads);
+        CLI11_PARSE(app, argc, argv);
+        fmt::print("seed bundles counted usual cost  links  linked different   cpu s\n");
+        for (const uint64_t seed : options.seeds) judge(options, seed);
+        return 0;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bundle_links_bench: {}\n", error.what());
+        return 1;
+    }
+}

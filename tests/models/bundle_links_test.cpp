@@ -1,0 +1,155 @@
+#include "kinetome/models/bundle_links.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "kinetome/base/random.h"
+
+using namespace kinetome;
+
+namespace {
+
+constexpr int64_t cycle = 40;  // rows
+constexpr int64_t clip_rows = 4 * cycle;
+
+/// Which of three columns moves, and how: what two performers have in common.
+struct Movement {
+    int column = 0;
+    double extent = 1;
+};
+
+/// Clips of cyclic movements, each with bundles cut at a phase of its own.
+struct Performances {
+    MatrixF rows;
+    std::vector<RowRange> clips;
+    std::vector<int32_t> subject_of;
+    std::vector<BundleMember> members;
+
+    /// A clip by each of two takes of the performer, two members in each, as one bundle.
+    int32_t add(int32_t subject, Movement movement, double posture, int64_t phase) {
+        const auto bundle = static_cast<int32_t>(clips.size() / 2);
+        for (int take = 0; take < 2; ++take) {
+            const int64_t first = rows.rows();
+            rows.conservativeResize(first + clip_rows, 3);
+            RandomStream random(1, "bundle links test", static_cast<uint64_t>(first));
+            for (int64_t i = 0; i < clip_rows; ++i) {
+                for (int column = 0; column < 3; ++column) {
+                    const double angle = 2 * std::numbers::pi * double(i) / double(cycle);
+                    const double moved = column == movement.column ? movement.extent : 0;
+                    rows(first + i, column) = static_cast<float>(
+                        posture + moved * (std::sin(angle) + 0.5 * std::sin(2 * angle)) +
+                        0.02 * random.normal());
+                }
+            }
+            const auto clip = static_cast<int32_t>(clips.size());
+            clips.push_back({first, first + clip_rows});
+            subject_of.push_back(subject);
+            for (const int64_t of_cycle : {1, 2}) {
+                const int64_t begin = of_cycle * cycle + phase;
+                members.push_back({bundle, {clip, begin, begin + cycle / 2}});
+            }
+        }
+        return bundle;
+    }
+
+    BundleLinks link(int threads = 1, const BundleLinkOptions& options = {}) const {
+        return link_bundles(rows, clips, members, subject_of, options, threads);
+    }
+};
+
+std::set<std::pair<int32_t, int32_t>> pairs_of(const BundleLinks& links) {
+    std::set<std::pair<int32_t, int32_t>> pairs;
+    for (const BundleLink& link : links.links) pairs.emplace(link.first, link.second);
+    return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("bundles of a cycle that two bodies cut at different phases are linked") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(1, {.column = 0}, 0.01, 8);
+    const BundleLinks links = performances.link();
+    REQUIRE(pairs_of(links) == std::set<std::pair<int32_t, int32_t>>{{0, 1}});
+    const BundleLink& link = links.links.front();
+    CHECK(link.first_row % cycle == Approx(link.second_row % cycle).margin(2));
+    CHECK(performances.subject_of[static_cast<size_t>(link.first_clip)] == 0);
+    CHECK(performances.subject_of[static_cast<size_t>(link.second_clip)] == 1);
+}
+
+TEST_CASE("bundles of opposite phases of a cycle are not linked") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(1, {.column = 0}, 0.01, cycle / 2);
+    CHECK(performances.link().links.empty());
+}
+
+TEST_CASE("movements of different limbs are not linked, however near they are") {
+    // As a left and a right punch: within reach of each other, but for what they move.
+    for (const int other : {0, 1}) {
+        Performances performances;
+        performances.add(0, {.column = 0, .extent = 0.06}, 0, 0);
+        performances.add(1, {.column = other, .extent = 0.06}, 0, 0);
+        CHECK(performances.link(1, {.unlike = 10}).links.size() == 1);
+        CHECK(performances.link().links.size() == (other == 0 ? 1 : 0));
+    }
+}
+
+TEST_CASE("movements in postures far apart are not linked") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(1, {.column = 0}, 2, 0);
+    CHECK(performances.link().links.empty());
+}
+
+TEST_CASE("bundles of one body are not linked with each other") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(0, {.column = 0}, 0, 0);
+    const BundleLinks links = performances.link();
+    CHECK(links.usual_cost > 0);
+    CHECK(links.links.empty());
+}
+
+TEST_CASE("links of bundles do not depend on threads or on the order of members") {
+    Performances performances;
+    for (const int32_t subject : {0, 1, 2}) {
+        performances.add(subject, {.column = 0}, 0.01 * subject, 3 * subject);
+        performances.add(subject, {.column = 1}, 0.01 * subject, 2 * subject);
+    }
+    const BundleLinks links = performances.link();
+    CHECK(links.links.size() == 6);
+    CHECK(performances.link(3).links == links.links);
+    std::ranges::reverse(performances.members);
+    CHECK(performances.link(2).links == links.links);
+}
+
+TEST_CASE("without two members of a bundle to compare nothing is linked") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(1, {.column = 0}, 0, 0);
+    performances.members = {performances.members[0], performances.members[4]};
+    const BundleLinks links = performances.link();
+    CHECK(links.usual_cost == 0);
+    CHECK(links.links.empty());
+}
+
+TEST_CASE("links are refused for lists that disagree") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    Performances short_of_subjects = performances;
+    short_of_subjects.subject_of.pop_back();
+    CHECK_THROWS_AS(short_of_subjects.link(), std::invalid_argument);
+    Performances beyond = performances;
+    beyond.members.front().frames.end = clip_rows + 1;
+    CHECK_THROWS_AS(beyond.link(), std::invalid_argument);
+    Performances elsewhere = performances;
+    elsewhere.members.front().frames.clip = 2;
+    CHECK_THROWS_AS(elsewhere.link(), std::invalid_argument);
+}
