@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct WalkFlags {
     fs::path store, output, labels;
-    std::string graph = "primitives", generation = "current";
+    std::string graph = "primitives", registration = "warp", generation = "current";
     WalkOptions walk;
     std::optional<double> fade;
 };
@@ -75,6 +75,8 @@ void print_walk(const PrimitiveWalk& walk) {
                walk.motion.frames(), walk.motion.rate, walk.body);
     fmt::print("foot slide    {:.2f} cm a second of contact (in the takes {:.2f})\n",
                quality.slide.speed(), quality.slide_in_takes.speed());
+    fmt::print("pose step     {:.0f} cm/s at most (in the takes {:.0f})\n", quality.pose_step,
+               quality.pose_step_in_takes);
     fmt::print("fastest joint {:.0f} cm/s (in the takes {:.0f})\n", quality.peaks.speed,
                quality.peaks_in_takes.speed);
     fmt::print("hardest jolt  {:.0f} cm/s² (in the takes {:.0f})\n", quality.peaks.acceleration,
@@ -94,11 +96,16 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
     if (flags.graph != "primitives" && flags.graph != "bundles") {
         throw UsageError(fmt::format("--graph {}: expected primitives or bundles", flags.graph));
     }
+    if (flags.registration != "warp" && flags.registration != "even") {
+        throw UsageError(
+            fmt::format("--registration {}: expected warp or even", flags.registration));
+    }
     const MotionFormat format = format_of(flags.output);
     const OpenStore open(flags.store, flags.generation);
     const bool bundles = flags.graph == "bundles";
     WalkOptions options = flags.walk;
     if (bundles) options = options_of_bundle_walk(options);
+    options.registered = flags.registration == "warp";
     if (flags.fade) options.fade_seconds = *flags.fade;
     const PrimitiveWalk made = walk_primitives(
         bundles ? stored_bundle_members(open, flags.labels) : stored_primitives(open, flags.labels),
@@ -142,6 +149,11 @@ Command walk_command() {
             app.add_option("--fade", flags->fade,
                            "seconds that going over from one piece of a node to another takes at "
                            "most (default: 0.4 of primitives, as long as both last of bundles)");
+            app.add_option(
+                   "--registration", flags->registration,
+                   "warp: what is alike is blended, as dynamic time warping finds it; even: "
+                   "equal shares of time are")
+                ->capture_default_str();
             app.add_option("--body", options.body,
                            "clip whose skeleton moves (default: the first of the walk)");
             app.add_option("--generation", flags->generation,

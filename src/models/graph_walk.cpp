@@ -1,6 +1,7 @@
 #include "kinetome/models/graph_walk.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -158,43 +159,121 @@ void check(const MotionGraph& graph, const std::vector<int32_t>& nodes) {
     }
 }
 
+/// Goes on step by step, and back where all ways on have an excess.
+class Walker {
+  public:
+    Walker(const MotionGraph& graph, const WalkRequest& request)
+        : graph_(graph),
+          request_(request),
+          guide_(graph, request),
+          random_(request.seed, "motion walk"),
+          stuck_(graph.pieces().size(), false) {
+        for (const int32_t node : guide_.starts()) {
+            const auto members = graph.members(node);
+            first_pieces_.insert(first_pieces_.end(), members.begin(), members.end());
+        }
+    }
+
+    GraphWalk walk() {
+        if (first_pieces_.empty()) return {};
+        entry_ = any_of(first_pieces_, random_);
+        while (true) {
+            const bool fills = filled() >= request_.frames;
+            const auto ways = ways_on(fills);
+            if (ways.empty()) return ended();
+            if (const auto way = fitting(ways)) {
+                go(*way);
+            } else if (fills || !may_go_back_ || !go_back()) {
+                go(of_least_excess(ways));
+            }
+        }
+    }
+
+  private:
+    int32_t node() const { return graph_.node_of(entry_); }
+    bool has_goal() const { return !request_.to.empty(); }
+    double excess(int32_t exit) const {
+        return request_.excess ? request_.excess(entry_, exit) : 0;
+    }
+
+    double filled() const {
+        return walk_.frames + (has_goal() ? guide_.frames_to_goal(node()) : frames(graph_, entry_));
+    }
+    std::vector<Succession> ways_on(bool fills) const {
+        if (!fills) return guide_.ways_on(node());
+        if (!has_goal() || std::ranges::count(request_.to, node()) > 0) return {};
+        return guide_.ways_to_goal(node());
+    }
+
+    /// Any of the ways without excess, after which the walk is not known to get stuck.
+    std::optional<Succession> fitting(std::vector<Succession> ways) {
+        while (!ways.empty()) {
+            const auto at = static_cast<std::ptrdiff_t>(random_.below(ways.size()));
+            const Succession way = ways[static_cast<size_t>(at)];
+            if (!stuck_[static_cast<size_t>(way.next)] && excess(way.piece) <= 0) return way;
+            ways.erase(ways.begin() + at);
+        }
+        return std::nullopt;
+    }
+    Succession of_least_excess(const std::vector<Succession>& ways) const {
+        return *std::ranges::min_element(ways, {},
+                                         [&](const Succession& way) { return excess(way.piece); });
+    }
+
+    void go(const Succession& way) {
+        frames_before_.push_back(walk_.frames);
+        walk_.steps.push_back({node(), entry_, way.piece});
+        walk_.frames += frames_of_step(graph_, entry_, way);
+        entry_ = way.next;
+    }
+    /// To the piece before, from which another way is then taken; from the first one to another
+    /// first one. False when there is none left.
+    bool go_back() {
+        stuck_[static_cast<size_t>(entry_)] = true;
+        if (walk_.steps.empty()) {
+            std::vector<int32_t> left;
+            std::ranges::copy_if(first_pieces_, std::back_inserter(left), [&](int32_t piece) {
+                return !stuck_[static_cast<size_t>(piece)];
+            });
+            if (left.empty()) {
+                stuck_.assign(stuck_.size(), false);
+                return may_go_back_ = false;
+            }
+            entry_ = any_of(left, random_);
+            return true;
+        }
+        entry_ = walk_.steps.back().entry;
+        walk_.frames = frames_before_.back();
+        walk_.steps.pop_back();
+        frames_before_.pop_back();
+        return true;
+    }
+
+    GraphWalk ended() {
+        walk_.steps.push_back({node(), entry_, entry_});
+        walk_.frames += frames(graph_, entry_);
+        walk_.ended_early = walk_.frames < request_.frames;
+        return std::move(walk_);
+    }
+
+    const MotionGraph& graph_;
+    const WalkRequest& request_;
+    Guide guide_;
+    RandomStream random_;
+    std::vector<int32_t> first_pieces_;
+    std::vector<bool> stuck_;  ///< pieces: whoever enters by them can go on with excess only
+    GraphWalk walk_;
+    std::vector<double> frames_before_;  ///< each step
+    int32_t entry_ = 0;                  ///< of the step at hand
+    bool may_go_back_ = true;            ///< false when no walk is without excess
+};
+
 }  // namespace
 
 GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request) {
     check(graph, request.from);
     check(graph, request.to);
-    const Guide guide(graph, request);
-    if (guide.starts().empty()) return {};
-    RandomStream random(request.seed, "motion walk");
-
-    std::vector<int32_t> first_pieces;
-    for (const int32_t node : guide.starts()) {
-        const auto members = graph.members(node);
-        first_pieces.insert(first_pieces.end(), members.begin(), members.end());
-    }
-    GraphWalk walk;
-    int32_t entry = any_of(first_pieces, random);
-    const bool has_goal = !request.to.empty();
-    const auto at_goal = [&](int32_t node) { return std::ranges::count(request.to, node) > 0; };
-    while (true) {
-        const int32_t node = graph.node_of(entry);
-        const double filled =
-            walk.frames + (has_goal ? guide.frames_to_goal(node) : frames(graph, entry));
-        const bool fills = filled >= request.frames;
-        const bool arrived = fills && (!has_goal || at_goal(node));
-        std::vector<Succession> ways;
-        if (!arrived) ways = fills ? guide.ways_to_goal(node) : guide.ways_on(node);
-        if (ways.empty()) {
-            walk.steps.push_back({node, entry, entry});
-            walk.frames += frames(graph, entry);
-            walk.ended_early = walk.frames < request.frames;
-            return walk;
-        }
-        const Succession& way = any_of(ways, random);
-        walk.steps.push_back({node, entry, way.piece});
-        walk.frames += frames_of_step(graph, entry, way);
-        entry = way.next;
-    }
+    return Walker(graph, request).walk();
 }
 
 }  // namespace kinetome

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace kinetome {
@@ -24,7 +25,11 @@ double total_weight(std::span<const MotionShare> shares) {
 }  // namespace
 
 MotionBlend::MotionBlend(std::shared_ptr<const Skeleton> skeleton, double rate)
-    : skeleton_(std::move(skeleton)), rate_(rate), root_(*skeleton_), interpolate_(*skeleton_) {
+    : skeleton_(std::move(skeleton)),
+      rate_(rate),
+      root_(*skeleton_),
+      chain_(*skeleton_),
+      interpolate_(*skeleton_) {
     if (!root_.is_free()) {
         throw std::invalid_argument("motion of skeleton '" + skeleton_->name() +
                                     "' cannot be joined: its root lacks translations or rotations");
@@ -71,6 +76,52 @@ Placement MotionBlend::placement(const Clip& clip, double moment) const {
     return after_step(at(frame), scaled(step_between(at(frame), at(frame + 1)), moment - whole));
 }
 
+MotionBlend::Feet MotionBlend::feet(const Row& centred, const Placement& placement) const {
+    Row placed = centred;
+    place(root_, placed, placement, centred);
+    Pose pose;
+    chain_.evaluate(placed, pose);
+    Feet feet;
+    for (size_t foot = 0; foot < feet.size(); ++foot) {
+        const int joint = skeleton_->role(foot_roles[foot]);
+        feet[foot] =
+            joint < 0 ? Eigen::Vector3d::Zero() : pose.positions[static_cast<size_t>(joint)];
+    }
+    return feet;
+}
+
+Eigen::Vector3d MotionBlend::slide(std::span<const MotionShare> shares, const Row& pose,
+                                   const Placement& step) const {
+    FootSupport support = {};
+    const double total = total_weight(shares);
+    for (const MotionShare& share : shares) {
+        if (share.weight == total) return Eigen::Vector3d::Zero();
+        for (size_t foot = 0; foot < support.size(); ++foot) {
+            support[foot] += share.weight / total * share.support[foot];
+        }
+    }
+    const double standing = std::reduce(support.begin(), support.end());
+    if (standing == 0) return Eigen::Vector3d::Zero();
+    Row before = rows_.back();
+    place(root_, before, {}, before);
+    const Feet from = feet(before, {}), to = feet(pose, step);
+    Feet beyond;
+    for (size_t foot = 0; foot < beyond.size(); ++foot) beyond[foot] = to[foot] - from[foot];
+    for (const MotionShare& share : shares) {
+        if (share.weight == 0) continue;
+        const Placement own = step_between(placement(*share.clip, share.moment_before),
+                                           placement(*share.clip, share.moment));
+        const Feet own_from = feet(centred_pose(*share.clip, share.moment_before), {});
+        const Feet own_to = feet(centred_pose(*share.clip, share.moment), own);
+        for (size_t foot = 0; foot < beyond.size(); ++foot) {
+            beyond[foot] -= share.weight / total * (own_to[foot] - own_from[foot]);
+        }
+    }
+    Eigen::Vector3d slid = Eigen::Vector3d::Zero();
+    for (size_t foot = 0; foot < beyond.size(); ++foot) slid += support[foot] * beyond[foot];
+    return slid / std::max(standing, 1.0);
+}
+
 void MotionBlend::append(std::span<const MotionShare> shares) {
     check(shares);
     Row row;
@@ -90,8 +141,15 @@ void MotionBlend::append(std::span<const MotionShare> shares) {
                                      share.weight);
         step = {step.x + own.x, step.z + own.z, step.heading + own.heading};
     }
-    placement_ = rows_.empty() ? placement(*shares.front().clip, shares.front().moment)
-                               : after_step(placement_, scaled(step, 1 / weight));
+    step = scaled(step, 1 / weight);
+    if (rows_.empty()) {
+        placement_ = placement(*shares.front().clip, shares.front().moment);
+    } else {
+        const Eigen::Vector3d slid = slide(shares, row, step);
+        step.x -= slid.x();
+        step.z -= slid.z();
+        placement_ = after_step(placement_, step);
+    }
     const Row near = rows_.empty() ? row : rows_.back();
     place(root_, row, placement_, near);
     rows_.push_back(std::move(row));

@@ -4,22 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kinetome/features/markers.h"
+#include "kinetome/formats/kinematics.h"
+
 namespace kinetome {
 namespace {
 
 Eigen::Vector3d position(const MatrixFView& positions, int64_t frame, int64_t joint) {
     return positions.row(frame).segment<3>(3 * joint).transpose().cast<double>();
-}
-
-/// The height below which a joint is for no more than that share of its frames.
-double floor_height(const MatrixFView& positions, int joint, double share) {
-    std::vector<float> heights;
-    for (int64_t frame = 0; frame < positions.rows(); ++frame) {
-        heights.push_back(positions(frame, 3 * joint + 1));
-    }
-    const auto rank = static_cast<int64_t>(share * static_cast<double>(heights.size()));
-    std::ranges::nth_element(heights, heights.begin() + rank);
-    return double{heights[static_cast<size_t>(rank)]};
 }
 
 void check(const Skeleton& skeleton, const MatrixFView& positions, double rate) {
@@ -30,30 +22,6 @@ void check(const Skeleton& skeleton, const MatrixFView& positions, double rate) 
 }
 
 }  // namespace
-
-std::vector<FootContacts> foot_contacts(const Skeleton& skeleton, const MatrixFView& positions,
-                                        double rate, const ContactOptions& options) {
-    check(skeleton, positions, rate);
-    std::vector<FootContacts> contacts(static_cast<size_t>(positions.rows()), FootContacts{});
-    if (contacts.empty()) return contacts;
-    const int64_t last = positions.rows() - 1;
-    for (size_t foot = 0; foot < foot_roles.size(); ++foot) {
-        const int joint = skeleton.role(foot_roles[foot]);
-        if (joint < 0) continue;
-        const double highest = floor_height(positions, joint, options.floor_share) + options.height;
-        for (int64_t frame = 0; frame <= last; ++frame) {
-            const int64_t before = std::max<int64_t>(frame - 1, 0),
-                          after = std::min(frame + 1, last);
-            const double seconds = static_cast<double>(std::max<int64_t>(after - before, 1)) / rate;
-            const double speed =
-                (position(positions, after, joint) - position(positions, before, joint)).norm() /
-                seconds;
-            contacts[static_cast<size_t>(frame)][foot] =
-                position(positions, frame, joint).y() <= highest && speed <= options.speed;
-        }
-    }
-    return contacts;
-}
 
 FootSlide& FootSlide::operator+=(const FootSlide& other) {
     distance += other.distance;
@@ -98,6 +66,26 @@ JointPeaks joint_peaks(const MatrixFView& positions, double rate) {
         }
     }
     return peaks;
+}
+
+std::vector<double> pose_steps(const Clip& clip) {
+    const MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, joint_positions(clip));
+    const double joints = static_cast<double>(markers.cols()) / 3;
+    std::vector<double> steps;
+    for (int64_t frame = 1; frame < markers.rows(); ++frame) {
+        const float squares = (markers.row(frame) - markers.row(frame - 1)).squaredNorm();
+        steps.push_back(std::sqrt(static_cast<double>(squares) / joints) * clip.rate);
+    }
+    return steps;
+}
+
+double largest_step(std::span<const double> pose_steps, const MotionRun& run) {
+    const auto count = static_cast<double>(pose_steps.size());
+    const auto first = static_cast<size_t>(std::clamp(std::floor(run.first), 0.0, count));
+    const auto end = static_cast<size_t>(std::clamp(std::ceil(run.end) - 1, 0.0, count));
+    double largest = 0;
+    for (size_t i = first; i < end; ++i) largest = std::max(largest, pose_steps[i]);
+    return largest;
 }
 
 JointPeaks larger(const JointPeaks& one, const JointPeaks& other) {

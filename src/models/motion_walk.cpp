@@ -16,16 +16,40 @@ double smoothstep(double share) {
     return share * share * (3 - 2 * share);
 }
 
-/// Going over from one side to the other. Time passes with the share s of the fade as
-/// dt/ds = (1 - w) out + w in, w = smoothstep(s): so it goes at the speed of each side where only
-/// that side is seen.
-struct Fade {
-    double out = 0, in = 0;  ///< frames of the two sides
+/// The integral of smoothstep from 0.
+double smoothstep_area(double share) {
+    const double cube = share * share * share;
+    return cube - cube * share / 2;
+}
 
-    double frames() const { return (out + in) / 2; }
+/// Going over from one side to the other. Time passes with the share s of the side that goes out as
+/// dt/ds = (1 - w) out + w in dr/ds, w = smoothstep(s), r(s) the share of the other side that
+/// answers: so it goes at the speed of each side where only that side is seen.
+struct Fade {
+    double out = 0, in = 0;                     ///< frames of the two sides
+    std::span<const double> registration = {};  ///< MotionRun::registration
+
+    double frames() const { return time(1); }
+    double in_share(double share) const {
+        if (registration.empty()) return share;
+        const double at = share * static_cast<double>(registration.size() - 1);
+        const auto knot = std::min(static_cast<size_t>(at), registration.size() - 2);
+        return std::lerp(registration[knot], registration[knot + 1],
+                         at - static_cast<double>(knot));
+    }
     double time(double share) const {
-        const double cube = share * share * share;
-        return out * share + (in - out) * (cube - cube * share / 2);
+        const double seen_out = out * (share - smoothstep_area(share));
+        if (registration.empty()) return seen_out + in * smoothstep_area(share);
+        const auto pieces = static_cast<double>(registration.size() - 1);
+        double seen_in = 0, area = 0;
+        for (size_t knot = 0; knot + 1 < registration.size(); ++knot) {
+            const double before = area;
+            const double end = std::min(static_cast<double>(knot + 1) / pieces, share);
+            area = smoothstep_area(end);
+            seen_in += (registration[knot + 1] - registration[knot]) * pieces * (area - before);
+            if (end == share) break;
+        }
+        return seen_out + in * seen_in;
     }
     /// The inverse of time, by bisection: time rises with the share, however unlike the sides are.
     double share(double at) const {
@@ -48,7 +72,8 @@ struct TimedRun {
     double moment(double at) const {
         const double time = at - start;
         if (time < 0) return run.first + time;
-        if (time < before.frames()) return run.first + run.fade_in * before.share(time);
+        if (time < before.frames())
+            return run.first + run.fade_in * before.in_share(before.share(time));
         const double left = end - at;
         if (left < after.frames()) {
             return run.end - run.fade_out * (1 - after.share(after.frames() - left));
@@ -71,8 +96,10 @@ std::vector<TimedRun> on_time_line(std::span<const MotionRun> runs) {
     double start = 0;
     for (size_t i = 0; i < runs.size(); ++i) {
         const MotionRun& run = runs[i];
-        const Fade before{i > 0 ? runs[i - 1].fade_out : 0, run.fade_in};
-        const Fade after{run.fade_out, i + 1 < runs.size() ? runs[i + 1].fade_in : 0};
+        const Fade before{i > 0 ? runs[i - 1].fade_out : 0, run.fade_in, run.registration};
+        const Fade after = i + 1 < runs.size()
+                               ? Fade{run.fade_out, runs[i + 1].fade_in, runs[i + 1].registration}
+                               : Fade{};
         const double alone = run.end - run.first - run.fade_in - run.fade_out;
         const double end = start + before.frames() + alone + after.frames();
         timed.push_back({run, before, after, start, end});
@@ -93,6 +120,20 @@ void for_each_frame(std::span<const MotionRun> runs, const Visit& visit) {
     }
 }
 
+FootSupport support_at(const std::vector<FootSupport>& support, double moment) {
+    if (support.empty()) return {};
+    const int64_t last = static_cast<int64_t>(support.size()) - 1;
+    return support[static_cast<size_t>(std::clamp<int64_t>(std::llround(moment), 0, last))];
+}
+
+void check_registration(const std::vector<double>& registration) {
+    if (registration.empty()) return;
+    if (registration.size() < 2 || registration.front() != 0 || registration.back() != 1 ||
+        !std::ranges::is_sorted(registration)) {
+        throw std::invalid_argument("a registration does not ascend from 0 to 1");
+    }
+}
+
 void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
     if (runs.empty()) throw std::invalid_argument("there are no motions to join");
     for (const MotionRun& run : runs) {
@@ -108,6 +149,7 @@ void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
         if (!(alone >= -rounding && run.fade_in >= 0 && run.fade_out >= 0)) {
             throw std::invalid_argument("a run is shorter than its fades");
         }
+        check_registration(run.registration);
     }
     if (runs.front().fade_in != 0 || runs.back().fade_out != 0) {
         throw std::invalid_argument("the ends of a motion have nothing to fade with");
@@ -120,7 +162,8 @@ double frames_of_runs(std::span<const MotionRun> runs) {
     return runs.empty() ? 0 : on_time_line(runs).back().end;
 }
 
-Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs) {
+Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs,
+               const ClipSupports& supports) {
     check(clips, runs);
     const Clip& first = clips[static_cast<size_t>(runs.front().clip)];
     MotionBlend blend(first.skeleton, first.rate);
@@ -128,8 +171,13 @@ Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs) {
     for_each_frame(runs, [&](double at, std::span<const TimedRun> seen) {
         shares.clear();
         for (const TimedRun& run : seen) {
-            shares.push_back({&clips[static_cast<size_t>(run.run.clip)], run.moment(at),
-                              run.moment(at - 1), run.weight(at)});
+            const auto clip = static_cast<size_t>(run.run.clip);
+            const double moment = run.moment(at);
+            shares.push_back({.clip = &clips[clip],
+                              .moment = moment,
+                              .moment_before = run.moment(at - 1),
+                              .weight = run.weight(at)});
+            if (!supports.empty()) shares.back().support = support_at(supports[clip], moment);
         }
         blend.append(shares);
     });

@@ -12,6 +12,7 @@ namespace {
 struct Measured {
     MatrixF positions;
     std::vector<FootContacts> contacts;
+    std::vector<double> pose_steps;
 
     int64_t inside(int64_t frame) const {
         return std::clamp<int64_t>(frame, 0, positions.rows() - 1);
@@ -28,8 +29,13 @@ std::map<int32_t, Measured> measured_clips(std::span<const Clip> clips,
         Measured& one = measured[run.clip];
         one.positions = joint_positions(clip);
         one.contacts = foot_contacts(*clip.skeleton, one.positions, clip.rate, options);
+        one.pose_steps = pose_steps(clip);
     }
     return measured;
+}
+
+MotionRun whole(const Clip& clip) {
+    return {.first = 0, .end = static_cast<double>(clip.frames())};
 }
 
 }  // namespace
@@ -48,6 +54,9 @@ WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun>
         const auto contacts = std::span(take.contacts)
                                   .subspan(static_cast<size_t>(first), static_cast<size_t>(count));
         quality.slide_in_takes += foot_slide(*walk.skeleton, rows, contacts, walk.rate);
+        quality.pose_step_in_takes =
+            std::max(quality.pose_step_in_takes,
+                     largest_step(take.pose_steps, whole(clips[static_cast<size_t>(run.clip)])));
         quality.peaks_in_takes = larger(quality.peaks_in_takes, joint_peaks(rows, walk.rate));
     }
     std::vector<FootContacts> contacts;
@@ -55,6 +64,7 @@ WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun>
         const Measured& take = takes.at(source.clip);
         contacts.push_back(take.contacts[static_cast<size_t>(take.inside(source.frame))]);
     }
+    quality.pose_step = largest_step(pose_steps(walk), whole(walk));
     const MatrixF positions = joint_positions(walk);
     quality.slide = foot_slide(*walk.skeleton, positions, contacts, walk.rate);
     quality.peaks = joint_peaks(positions, walk.rate);

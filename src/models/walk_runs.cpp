@@ -22,13 +22,51 @@ double moved_inside(double middle, double fade, double length) {
     return std::clamp(middle, fade / 2, std::max(fade / 2, length - fade / 2));
 }
 
+/// Where the second sequence is when the first is at `moment`, by a warp of all rows of both.
+double answer(const std::vector<WarpCell>& cells, double moment, double first_rows,
+              double second_rows) {
+    const auto at = [&](size_t i) {  // middles of cells, between the beginnings and the ends
+        if (i == 0) return std::pair(0.0, 0.0);
+        if (i > cells.size()) return std::pair(first_rows, second_rows);
+        return std::pair(cells[i - 1].first + 0.5, cells[i - 1].second + 0.5);
+    };
+    size_t next = 1;
+    while (next <= cells.size() && at(next).first < moment) ++next;
+    const auto [first, second] = at(next - 1);
+    const auto [next_first, next_second] = at(next);
+    return std::lerp(second, next_second, (moment - first) / (next_first - first));
+}
+
+/// Even shares of the first sequence's rows from `first` to `end`, and the shares of the second's
+/// that answer them: each the mean over an eighth to either side, so that speeds do not jump.
+std::vector<double> registration(const std::vector<WarpCell>& cells, double first, double end,
+                                 double first_rows, double second_rows) {
+    constexpr int pieces = 16, reach = 2;
+    std::vector<double> answers, shares;
+    for (int i = 0; i <= pieces; ++i) {
+        answers.push_back(answer(cells, std::lerp(first, end, static_cast<double>(i) / pieces),
+                                 first_rows, second_rows));
+    }
+    for (int i = 0; i <= pieces; ++i) {
+        const int near = std::min({reach, i, pieces - i});  // the ends stay where they are
+        double sum = 0;
+        for (int j = i - near; j <= i + near; ++j) sum += answers[static_cast<size_t>(j)];
+        shares.push_back(sum / (2 * near + 1));
+    }
+    const double from = shares.front(), length = shares.back() - from;
+    if (!(length > 0)) return {};
+    for (double& share : shares) share = (share - from) / length;
+    shares.back() = 1;
+    return shares;
+}
+
 }  // namespace
 
 Crossing best_crossing(const MatrixFView& entry, const MatrixFView& exit, double fade_entry,
                        double fade_exit) {
     const auto entry_rows = static_cast<double>(entry.rows());
     const auto exit_rows = static_cast<double>(exit.rows());
-    Crossing best{entry_rows / 2, exit_rows / 2};
+    Crossing best{.entry = entry_rows / 2, .exit = exit_rows / 2};
     double least = HUGE_VAL;
     const std::vector<WarpCell> cells = warp(entry, exit).cells;
     std::vector<double> sums = {0};  // of squared distances, of the cells before
@@ -39,7 +77,7 @@ Crossing best_crossing(const MatrixFView& entry, const MatrixFView& exit, double
     }
     size_t begin = 0, end = 0;  // of the cells that a fade about the cell at hand passes
     for (const WarpCell& cell : cells) {
-        const Crossing middle{cell.first + 0.5, cell.second + 0.5};
+        const Crossing middle{.entry = cell.first + 0.5, .exit = cell.second + 0.5};
         while (cells[begin].first < cell.first - fade_entry / 2) ++begin;
         while (end < cells.size() && cells[end].first <= cell.first + fade_entry / 2) ++end;
         if (!is_inside(middle.entry, fade_entry, entry_rows) ||
@@ -50,6 +88,9 @@ Crossing best_crossing(const MatrixFView& entry, const MatrixFView& exit, double
         if (mean < least) best = middle;
         least = std::min(least, mean);
     }
+    if (cells.empty()) return best;
+    const double first = best.entry - fade_entry / 2;
+    best.registration = registration(cells, first, first + fade_entry, entry_rows, exit_rows);
     return best;
 }
 
@@ -57,7 +98,7 @@ Crossing fade_lengths(const MotionPiece& entry, const MotionPiece& exit, double 
     const auto in = static_cast<double>(entry.frames());
     const auto out = static_cast<double>(exit.frames());
     const double share = std::min(1.0, 2 * fade_frames / (in + out));
-    return {in * share, out * share};
+    return {.entry = in * share, .exit = out * share};
 }
 
 std::vector<MotionRun> runs_of_walk(
@@ -80,6 +121,7 @@ std::vector<MotionRun> runs_of_walk(
         runs.back().first +=
             moved_inside(middle.exit, fade.exit, exit.end - exit.first) - fade.exit / 2;
         runs.back().fade_in = fade.exit;
+        runs.back().registration = middle.registration;
     }
     return runs;
 }
@@ -90,7 +132,7 @@ std::vector<MotionRun> runs_of_walk(const MotionGraph& graph, const std::vector<
         return static_cast<double>(graph.piece(piece).frames()) / 2;
     };
     return runs_of_walk(graph, steps, fade_frames, [&](int32_t entry, int32_t exit) {
-        return Crossing{middle(entry), middle(exit)};
+        return Crossing{.entry = middle(entry), .exit = middle(exit)};
     });
 }
 

@@ -9,11 +9,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/quote.h"
-#include "kinetome/features/markers.h"
-#include "kinetome/formats/kinematics.h"
-#include "kinetome/formats/resample.h"
-#include "kinetome/models/graph_walk.h"
-#include "kinetome/models/retarget.h"
+#include "walk_clips.h"
 
 namespace kinetome {
 namespace {
@@ -107,74 +103,6 @@ void check(const WalkOptions& options) {
     if (!(options.fade_seconds >= 0)) throw UsageError("--fade: expected seconds, 0 or more");
 }
 
-/// The clips of a graph on one body, at one rate; read when they are first asked for.
-class ClipsOfOneBody {
-  public:
-    ClipsOfOneBody(const StoredGraph& graph, const ClipSource& source, const std::string& body)
-        : graph_(graph), source_(source), body_(body), clips_(graph.clips.size()) {
-        const std::string body_class = source.kind(body).clip_class;
-        const std::string clip_class = source.kind(graph.clips.front()).clip_class;
-        if (body_class != clip_class) {
-            throw UsageError(fmt::format(
-                "--body {}: it is of class {}, the walk's {}s of class {}; name a "
-                "clip of that class",
-                quote_for_message(body), body_class, graph.nodes.style.piece, clip_class));
-        }
-        skeleton_ = source.read(body).skeleton;
-    }
-
-    const std::string& body() const { return body_; }
-    /// By number in the graph; those not yet asked for have no frames.
-    const std::vector<Clip>& clips() const { return clips_; }
-
-    const Clip& clip(int32_t number) {
-        Clip& clip = clips_[static_cast<size_t>(number)];
-        if (!clip.skeleton) {
-            const Clip stored = source_.read(graph_.clips[static_cast<size_t>(number)]);
-            clip = retarget(resample(stored, graph_.rate), skeleton_);
-        }
-        return clip;
-    }
-
-  private:
-    const StoredGraph& graph_;
-    const ClipSource& source_;
-    std::string body_;
-    std::shared_ptr<const Skeleton> skeleton_;
-    std::vector<Clip> clips_;
-};
-
-/// Poses of a piece, without place and heading: every `stride` frames a row.
-MatrixF poses_of(const Clip& clip, const MotionPiece& piece, int64_t stride) {
-    const int64_t end = std::min(piece.end, clip.frames());
-    const int64_t rows = std::max<int64_t>((end - piece.first + stride - 1) / stride, 0);
-    Clip part{clip.skeleton, MatrixF(rows, clip.motion.cols()), clip.rate};
-    for (int64_t row = 0; row < rows; ++row) {
-        part.motion.row(row) = clip.motion.row(piece.first + row * stride);
-    }
-    return normalised_markers(*clip.skeleton, part.motion, joint_positions(part));
-}
-
-Crossing scaled(const Crossing& crossing, double by) {
-    return {crossing.entry * by, crossing.exit * by};
-}
-
-std::vector<MotionRun> runs_of(const MotionGraph& graph, const GraphWalk& walk,
-                               ClipsOfOneBody& clips, double rate, double fade_frames) {
-    constexpr double poses_a_second = 30;
-    const auto stride = std::max<int64_t>(std::llround(rate / poses_a_second), 1);
-    const auto poses = [&](int32_t piece) {
-        return poses_of(clips.clip(graph.piece(piece).clip), graph.piece(piece), stride);
-    };
-    for (const WalkStep& step : walk.steps) clips.clip(graph.piece(step.entry).clip);
-    return runs_of_walk(graph, walk.steps, fade_frames, [&](int32_t entry, int32_t exit) {
-        const auto step = static_cast<double>(stride);
-        const Crossing fade =
-            scaled(fade_lengths(graph.piece(entry), graph.piece(exit), fade_frames), 1 / step);
-        return scaled(best_crossing(poses(entry), poses(exit), fade.entry, fade.exit), step);
-    });
-}
-
 }  // namespace
 
 PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
@@ -189,21 +117,21 @@ PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
 
     const double wanted = options.seconds * graph.rate;
     WalkRequest request{.frames = wanted, .seed = options.seed, .from = from, .to = to};
-    GraphWalk way = random_walk(pieces, request);
-    const MotionPiece& first = pieces.piece(way.steps.front().entry);
-    ClipsOfOneBody clips(
-        graph, source,
+    const MotionPiece& first = pieces.piece(random_walk(pieces, request).steps.front().entry);
+    WalkClips clips(
+        graph, source, options,
         options.body.empty() ? graph.clips[static_cast<size_t>(first.clip)] : options.body);
-    const double fade_frames = options.fade_seconds * graph.rate;
-    auto runs = runs_of(pieces, way, clips, graph.rate, fade_frames);
+    request.excess = [&](int32_t entry, int32_t exit) { return clips.excess(entry, exit); };
+    GraphWalk way = random_walk(pieces, request);
+    auto runs = clips.runs(way);
     // Going over early in one piece and late in the next makes a walk shorter than it was planned.
     while (frames_of_runs(runs) < wanted && !way.ended_early) {
         request.frames += wanted - frames_of_runs(runs) + 1;
         way = random_walk(pieces, request);
-        runs = runs_of(pieces, way, clips, graph.rate, fade_frames);
+        runs = clips.runs(way);
     }
 
-    PrimitiveWalk walk{.motion = play_runs(clips.clips(), runs),
+    PrimitiveWalk walk{.motion = play_runs(clips.clips(), runs, clips.supports()),
                        .body = clips.body(),
                        .ended_early = frames_of_runs(runs) < wanted};
     walk.quality = measure_walk(clips.clips(), runs, walk.motion);

@@ -1,9 +1,11 @@
 // What `walk` and the export of its graph promise.
+#include <regex>
 #include <set>
 
 #include "program.h"
 #include "store_on_disk.h"
 #include "support/temporary_folder.h"
+#include "support/test_corpus.h"
 #include "takes.h"
 
 namespace {
@@ -167,6 +169,58 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
                      .output);
     CHECK(score.front() == "bundles,purity,shuffled,chance,coverage,mean_height,median_width");
     CHECK(score.size() == 2);
+}
+
+namespace {
+
+/// The two numbers of a line of what walk prints: of the walk, and of the takes.
+std::pair<double, double> measured(const std::string& output, const std::string& line) {
+    const std::string number = "([0-9.]+)";
+    const std::regex pattern(line + " +" + number + "[^0-9]*" + number + "\\)");
+    std::smatch found;
+    REQUIRE(std::regex_search(output, found, pattern));
+    return {std::stod(found[1]), std::stod(found[2])};
+}
+
+void check_quality(const std::string& store, const std::string& graph, const std::string& output) {
+    for (const char* const seed : {"1", "2", "3"}) {
+        const std::string told = require_program({"walk", store, "--graph", graph, "--seconds",
+                                                  "20", "--seed", seed, "-o", output})
+                                     .output;
+        CAPTURE(graph, seed, told);
+        const auto [step, step_in_takes] = measured(told, "pose step");
+        CHECK(step <= step_in_takes);
+        const auto [slide, slide_in_takes] = measured(told, "foot slide");
+        CHECK(slide <= 1.5 * slide_in_takes);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("in walks no pose changes faster than in the takes, and feet slide hardly more",
+          "[walk]") {
+    const LabelledStore store;
+    check_quality(store.path, "bundles", store.output("w.bvh"));
+    check_quality(store.path, "primitives", store.output("w.bvh"));
+    CHECK(contains(
+        require_program({"walk", store.path, "--registration", "odd", "-o", store.output("w.bvh")},
+                        usage)
+            .errors,
+        "expected warp or even"));
+}
+
+TEST_CASE("the same holds of walks through the bundles of real takes", "[walk][corpus]") {
+    const auto corpus = test_corpus();
+    if (!corpus) return;
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "takes");
+    for (const char* const file : {"14/14_14.amc", "14/14.asf", "13/13_29.amc", "13/13.asf"}) {
+        fs::copy_file(*corpus / "cmu" / file, folder / "takes" / fs::path(file).filename());
+    }
+    const std::string store = (folder / "store").string();
+    require_program({"reindex", (folder / "takes").string(), "--store", store, "--only",
+                     "frames,features,pose_clusters,motion_strings,bundles,bundle_graph"});
+    check_quality(store, "bundles", (folder / "w.bvh").string());
 }
 
 TEST_CASE("a store without bundles says what makes them", "[walk]") {

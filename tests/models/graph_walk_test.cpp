@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -119,6 +120,43 @@ TEST_CASE("a walk to a node ends there, and is as long as was wanted") {
     }
 }
 
+TEST_CASE("a walk goes back rather than over to a piece that does not fit, if it can") {
+    // By the second a (piece 3) it gets into b, from which only exits that do not fit lead on.
+    const auto graph = graph_of({"aaab", "abba", "ab"}, 2);
+    const auto fits = [&](int32_t entry, int32_t exit) {
+        return entry == exit || (graph.node_of(entry) == 0 && (entry + exit) % 2 == 0);
+    };
+    const auto misfits = [&](const GraphWalk& walk) {
+        return std::ranges::count_if(
+            walk.steps, [&](const WalkStep& step) { return !fits(step.entry, step.exit); });
+    };
+    const auto excess = [&](int32_t entry, int32_t exit) {
+        return fits(entry, exit) ? 0.0 : 1.0 + double(exit);
+    };
+    int64_t without = 0;
+    for (uint64_t seed = 0; seed < 30; ++seed) {
+        const WalkRequest request{.frames = 400, .seed = seed, .excess = excess};
+        const auto walk = random_walk(graph, request);
+        CHECK(misfits(walk) == 0);
+        CHECK_FALSE(walk.ended_early);
+        CHECK(walk.frames >= 400);
+        CHECK(walk.frames < 424);
+        check_continuous(graph, walk);
+        CHECK(walk.steps == random_walk(graph, request).steps);
+        without += misfits(random_walk(graph, {.frames = 400, .seed = seed}));
+    }
+    CHECK(without > 30);
+}
+
+TEST_CASE("where nothing fits a walk takes what fits best") {
+    const auto graph = graph_of({"aaa"}, 1);
+    const auto walk = random_walk(graph, {.frames = 300, .excess = [](int32_t, int32_t exit) {
+                                              return exit == 0 ? 2.0 : 1.0;
+                                          }});
+    CHECK_FALSE(walk.ended_early);
+    for (size_t i = 0; i + 1 < walk.steps.size(); ++i) CHECK(walk.steps[i].exit == 1);
+}
+
 TEST_CASE("a walk that nothing can follow says that it ended early") {
     const auto graph = graph_of({"abc", "bd"}, 4);
     const auto walk = random_walk(graph, {.frames = 1000, .from = {0}});
@@ -170,6 +208,20 @@ TEST_CASE("pieces are crossed where they agree best, at moments that answer each
     const Crossing unlike = best_crossing(entry.topRows(10), exit, 1, 1);
     CHECK(unlike.entry == 5);
     CHECK(unlike.exit == 60);
+    CHECK(unlike.registration.empty());
+}
+
+TEST_CASE("a fade is registered by what dynamic time warping finds, from end to end") {
+    MatrixF even(80, 1), late(120, 1);
+    for (int i = 0; i < 80; ++i) even(i, 0) = float(i / 79.0);
+    for (int i = 0; i < 120; ++i) late(i, 0) = float(std::pow(i / 119.0, 1.6));
+    const auto registration = best_crossing(even, late, 80, 120).registration;
+    REQUIRE(registration.size() > 10);
+    CHECK(registration.front() == 0);
+    CHECK(registration.back() == 1);
+    CHECK(std::ranges::is_sorted(registration));
+    const size_t middle = registration.size() / 2;
+    CHECK(registration[middle] == Approx(std::pow(0.5, 1 / 1.6)).margin(0.03));
 }
 
 TEST_CASE("a crossing near the end of a piece is moved until the fade fits") {

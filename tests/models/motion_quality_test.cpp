@@ -102,3 +102,42 @@ TEST_CASE("a walk is measured beside the runs it is made of, its feet by where t
     CHECK(sources[81].clip == 1);
     CHECK(sources[81].frame == 81);
 }
+
+TEST_CASE("a pose step is what joints move beside the root and its heading") {
+    using namespace small_body;
+    const auto body = std::make_shared<const Skeleton>(skeleton());
+    MatrixF motion = MatrixF::Zero(50, skeleton().dof_count());
+    for (int i = 0; i < 50; ++i) motion(i, root_z) = 3 * float(i);
+    motion.col(root_yaw) = VectorF::LinSpaced(50, 0, 2);
+    const Clip still{body, motion, rate};
+    CHECK(largest_step(pose_steps(still), {.first = 0, .end = 50}) < 0.1);
+    motion.bottomRows(20).col(root_pitch).setConstant(0.2f);  // all joints tilt about the root
+    const auto steps = pose_steps({body, motion, rate});
+    REQUIRE(steps.size() == 49);
+    double squares = 0;
+    for (const Joint& joint : body->joints()) {
+        if (joint.parent < 0) continue;
+        Eigen::Vector3d at = joint.offset_after;
+        if (joint.parent > 0) at += body->joints()[size_t(joint.parent)].offset_after;
+        squares += std::pow(2 * std::sin(0.1) * std::hypot(at.y(), at.z()), 2);
+    }
+    const double expected = std::sqrt(squares / double(body->joint_count())) * rate;
+    CHECK(steps[29] == Approx(expected).epsilon(1e-3));
+    CHECK(largest_step(steps, {.first = 0, .end = 50}) == steps[29]);
+    CHECK(largest_step(steps, {.first = 0, .end = 30}) < 0.1);
+    CHECK(largest_step(steps, {.first = 40, .end = 500}) < 0.1);
+}
+
+TEST_CASE("how firmly a foot stands rises and falls over the time given") {
+    std::vector<FootContacts> contacts(100, FootContacts{});
+    for (size_t i = 40; i < 60; ++i) contacts[i][1] = true;
+    const auto support = foot_support(contacts, 120, 0.1);
+    REQUIRE(support.size() == 100);
+    for (size_t i = 1; i < 100; ++i) {
+        CHECK(support[i][0] == 0);
+        CHECK(std::abs(support[i][1] - support[i - 1][1]) < 0.08);
+    }
+    CHECK(support[33][1] == 0);
+    CHECK(support[50][1] == 1);
+    CHECK(support[66][1] == 0);
+}

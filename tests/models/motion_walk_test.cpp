@@ -169,6 +169,64 @@ TEST_CASE("a fade between motions of unlike length begins and ends at the speed 
     CHECK(largest_step(played) < 1.1 * std::max(largest_step(slow), largest_step(fast)));
 }
 
+TEST_CASE("feet that stand on both sides of a fade stay where they are, feet in the air do not") {
+    // Two bodies that stand still, one leaning forward, one back: their feet are under different
+    // places of the root.
+    MatrixF forward = MatrixF::Zero(120, skeleton().dof_count()), back = forward;
+    forward.col(root_pitch).setConstant(0.1f);
+    back.col(root_pitch).setConstant(-0.1f);
+    const std::vector<Clip> clips = {clip_of(forward), clip_of(back)};
+    const std::vector<MotionRun> runs = {{0, 0, 100, 0, 60}, {1, 20, 120, 60, 0}};
+    const auto standing_at = [](double support) {
+        return ClipSupports(2, std::vector<FootSupport>(120, {support, support, 0, 0}));
+    };
+    const auto farthest = [](const Clip& played) {
+        const MatrixF at = joint_positions(played);
+        const auto ankle = at.middleCols(3 * skeleton().role(JointRole::left_ankle), 3);
+        const MatrixF from_start = ankle.rowwise() - ankle.row(0);
+        return double(from_start.col(2).cwiseAbs().maxCoeff());
+    };
+    CHECK(farthest(play_runs(clips, runs, standing_at(0))) > 10);
+    CHECK(farthest(play_runs(clips, runs)) == farthest(play_runs(clips, runs, standing_at(0))));
+    CHECK(farthest(play_runs(clips, runs, standing_at(1))) < 0.1);
+    // Where one clip is seen alone it is as it was, however its feet slide.
+    const Clip gliding = clip_of(strides(100, 50, 0.2, 0.1));
+    const Clip alone = play_runs(std::vector{gliding, gliding},
+                                 std::vector<MotionRun>{{0, 10, 60}, {1, 60, 90}}, standing_at(1));
+    check_equal(joint_positions(alone), joint_positions(gliding).middleRows(10, 80), 5e-3);
+}
+
+TEST_CASE("a registered fade blends what answers each other, an even one what does not") {
+    // The same movement, once at one speed, once slow at first and fast then.
+    MatrixF even = MatrixF::Zero(200, skeleton().dof_count()), late = even;
+    const int dof = 6;
+    const auto bump = [](double share) {
+        return float(std::exp(-std::pow((share - 0.5) / 0.06, 2)));
+    };
+    std::vector<double> registration;  // of even shares of the first
+    for (int i = 0; i < 200; ++i) {
+        const double share = i / 199.0;
+        even(i, dof) = bump(share);
+        late(i, dof) = bump(share * share);
+    }
+    for (int i = 0; i <= 64; ++i) registration.push_back(std::sqrt(i / 64.0));
+    const std::vector<Clip> clips = {clip_of(even), clip_of(late)};
+    std::vector<MotionRun> runs = {{0, 0, 200, 0, 200}, {1, 0, 200, 200, 0}};
+    const auto swing = [&] {
+        const MatrixF angles = play_runs(clips, runs).motion.col(dof);
+        return double(angles.maxCoeff() - angles.minCoeff());
+    };
+    CHECK(swing() < 0.9);
+    runs[1].registration = registration;
+    CHECK(swing() == Approx(1).margin(0.02));
+    CHECK(play_runs(clips, runs).frames() == std::llround(std::ceil(frames_of_runs(runs) - 1e-6)));
+
+    for (const std::vector<double>& bad : {std::vector{0.0}, {0.0, 0.5}, {0.0, 0.6, 0.5, 1.0}}) {
+        runs[1].registration = bad;
+        CHECK_THROWS_AS(play_runs(clips, runs), std::invalid_argument);
+    }
+}
+
 TEST_CASE("what cannot be joined is refused") {
     const Clip clip = clip_of(wandering(50));
     Clip other_rate = clip, other_body = clip;

@@ -16,6 +16,9 @@ struct WalkRequest {
     uint64_t seed = 1;               ///< the same seed walks the same way
     std::vector<int32_t> from = {};  ///< nodes of which one begins; empty: any
     std::vector<int32_t> to = {};    ///< nodes of which one ends; empty: any
+    /// How far going over from a piece to another of its node is beyond what is wanted; 0 or less:
+    /// it is not. Empty: never.
+    std::function<double(int32_t entry, int32_t exit)> excess = {};
 };
 
 /// A node is entered by one of its pieces and left by another, or by the same.
@@ -33,6 +36,8 @@ struct GraphWalk {
 };
 
 /// Goes from node to node as the takes do: each succession out of a node is as likely as any other.
+/// Those with an excess are not taken; where a walk could go on with excess only, it goes back and
+/// takes another way. What excess is left is on the way to `to`, or in graphs without another way.
 /// It keeps to nodes from which one of `to` can be reached, and does not get stuck while there is a
 /// way out: it leads to the cycle of nodes with most pieces among those within reach, and stays.
 /// From the moment when the shortest way to `to` fills the wanted length it takes that way; so
@@ -45,6 +50,7 @@ GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request);
 /// the middle of the fade, need not be whole.
 struct Crossing {
     double entry = 0, exit = 0;
+    std::vector<double> registration = {};  ///< MotionRun::registration of the fade
 };
 
 /// Where the pieces agree best: of all moments that dynamic time warping finds to answer each other
@@ -52,6 +58,7 @@ struct Crossing {
 /// fade. `entry` and `exit` are the n × d and m × d poses of the pieces, place and heading removed;
 /// lengths and result count in rows. The fade stays inside both pieces, `fade_entry` and
 /// `fade_exit` rows of them; the middles of both when that leaves no choice or no warp is found.
+/// The fade is registered by the same warp, made smooth; not at all where there is none.
 Crossing best_crossing(const MatrixFView& entry, const MatrixFView& exit, double fade_entry,
                        double fade_exit);
 

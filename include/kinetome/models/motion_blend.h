@@ -1,13 +1,16 @@
 // Motion put together frame by frame from several clips at once, going on where it stands.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "kinetome/features/placement.h"
 #include "kinetome/formats/clip.h"
+#include "kinetome/formats/kinematics.h"
 #include "kinetome/formats/pose_interpolation.h"
+#include "kinetome/models/foot_contacts.h"
 
 namespace kinetome {
 
@@ -18,12 +21,17 @@ struct MotionShare {
     double moment = 0;
     double moment_before = 0;  ///< what it would give to the frame before
     double weight = 1;         ///< of all shares' weights, which need not add up to 1
+    FootSupport support = {};  ///< how firmly the clip's feet stand at the moment
 };
 
 /// Joints, height and tilt of a frame are blended pose by pose (PoseInterpolation, in the order of
 /// the shares); place and heading on the floor are not: the root's steps are, as seen from the
 /// root, and each frame is one step from the last. So no clip needs to be moved where another one
 /// stands, and a blend of equal clips is that clip.
+///
+/// A foot that stands in all clips slides in their blend: it goes from where the one has it under
+/// the body to where the other has it. The body gives way instead, as far as feet stand: each step
+/// of the root is altered by the mean of what the blend adds to the steps of standing feet.
 class MotionBlend {
   public:
     /// All clips are of this skeleton. Throws std::invalid_argument when its root is not free to go
@@ -45,10 +53,17 @@ class MotionBlend {
     /// The clip at any moment, standing at the origin and facing along +z.
     Row centred_pose(const Clip& clip, double moment) const;
     Placement placement(const Clip& clip, double moment) const;
+    /// What the blend's feet go along the floor beyond what the shares' feet do, in the mean of
+    /// those that stand; as seen from the frame before. `pose` is centred, `step` the root's.
+    Eigen::Vector3d slide(std::span<const MotionShare> shares, const Row& pose,
+                          const Placement& step) const;
+    using Feet = std::array<Eigen::Vector3d, foot_roles.size()>;
+    Feet feet(const Row& centred, const Placement& placement) const;
 
     std::shared_ptr<const Skeleton> skeleton_;
     double rate_;
     RootChain root_;
+    KinematicChain chain_;
     PoseInterpolation interpolate_;
     Placement placement_;
     std::vector<Row> rows_;

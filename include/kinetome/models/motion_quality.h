@@ -1,33 +1,16 @@
 // How sound a motion is that was put together: whether feet slide, whether joints jump.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "kinetome/base/matrix.h"
 #include "kinetome/formats/clip.h"
+#include "kinetome/models/foot_contacts.h"
 #include "kinetome/models/motion_walk.h"
 
 namespace kinetome {
-
-/// Joints that stand on the floor.
-inline constexpr std::array foot_roles = {JointRole::left_ankle, JointRole::right_ankle,
-                                          JointRole::left_toes, JointRole::right_toes};
-using FootContacts = std::array<bool, foot_roles.size()>;
-
-struct ContactOptions {
-    double height = 4;          ///< cm above where the joint stands on the floor
-    double speed = 30;          ///< cm/s that the joint moves at most
-    double floor_share = 0.02;  ///< of its frames in which a joint may be below its floor: noise
-};
-
-/// Which feet stand in each frame of a take. `positions` are n × 3·joint_count, cm (kinematics.h);
-/// a joint that the skeleton lacks never stands. Throws std::invalid_argument when the shapes
-/// disagree or the rate is not positive.
-std::vector<FootContacts> foot_contacts(const Skeleton& skeleton, const MatrixFView& positions,
-                                        double rate, const ContactOptions& options = {});
 
 /// How far feet go along the floor while they stand.
 struct FootSlide {
@@ -51,10 +34,18 @@ struct JointPeaks {
 JointPeaks joint_peaks(const MatrixFView& positions, double rate);
 JointPeaks larger(const JointPeaks& one, const JointPeaks& other);
 
+/// How fast the pose of each frame changes to that of the next, place and heading removed, cm/s:
+/// the root mean square over the markers (normalised_markers). One less than the clip has frames.
+std::vector<double> pose_steps(const Clip& clip);
+/// The largest of those inside a run's frames of its clip; 0 where there is none.
+double largest_step(std::span<const double> pose_steps, const MotionRun& run);
+
 /// A motion joined from runs of clips, beside those runs where they come from.
 struct WalkQuality {
     FootSlide slide, slide_in_takes;
     JointPeaks peaks, peaks_in_takes;
+    double pose_step = 0;           ///< the largest, cm/s
+    double pose_step_in_takes = 0;  ///< that of the whole clips
 };
 /// `walk` is what play_runs makes of the runs. Its feet are taken to stand where they do in the
 /// clip that is seen most: a foot that is dragged by a blend counts. Throws what foot_contacts

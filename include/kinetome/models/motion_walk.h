@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kinetome/formats/clip.h"
+#include "kinetome/models/foot_contacts.h"
 #include "kinetome/models/motion_graph.h"
 
 namespace kinetome {
@@ -14,24 +15,32 @@ namespace kinetome {
 /// whole. Its first `fade_in` frames and the last `fade_out` frames of the run before are played
 /// together, while the one goes over into the other.
 ///
-/// A fade lasts (fade_out + fade_in) / 2 frames. Both sides pass through it in equal shares, at
-/// first at the speed of the one, at last at the speed of the other.
+/// Both sides pass through a fade at first at the speed of the one, at last at the speed of the
+/// other: in equal shares, and it lasts (fade_out + fade_in) / 2 frames, or as `registration` says.
 struct MotionRun {
     int32_t clip = 0;
     double first = 0, end = 0;
     double fade_in = 0;
     double fade_out = 0;  ///< 0 in the last run
+    /// Shares of fade_in, ascending from 0 to 1, that answer even shares of the fade_out before it;
+    /// empty: the same ones.
+    std::vector<double> registration = {};
     bool operator==(const MotionRun&) const = default;
 };
 
 /// Length of what play_runs makes, in frames, not rounded.
 double frames_of_runs(std::span<const MotionRun> runs);
 
+/// How firmly feet stand in the frames of each clip (foot_support); of no clip: feet are not held.
+using ClipSupports = std::vector<std::vector<FootSupport>>;
+
 /// The runs as one motion: rotations by slerp with smoothstep weights in a fade, place and heading
 /// going on from where they are (MotionBlend). Clips are of one skeleton and one rate; a run may
 /// reach beyond its clip's ends, where the pose is held. Throws std::invalid_argument for clips
-/// that differ, runs of clips that are not there, runs shorter than their fades, or no run.
-Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs);
+/// that differ, runs of clips that are not there, runs shorter than their fades, registrations that
+/// do not ascend from 0 to 1, or no run.
+Clip play_runs(std::span<const Clip> clips, std::span<const MotionRun> runs,
+               const ClipSupports& supports = {});
 
 /// The clip that is seen most in a frame of the whole, and the nearest of its frames.
 struct FrameSource {

@@ -1,0 +1,125 @@
+#include "walk_clips.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinetome/base/error.h"
+#include "kinetome/base/quote.h"
+#include "kinetome/features/markers.h"
+#include "kinetome/formats/kinematics.h"
+#include "kinetome/formats/resample.h"
+#include "kinetome/models/retarget.h"
+
+namespace kinetome {
+namespace {
+
+/// Poses of a piece, without place and heading: every `stride` frames a row.
+MatrixF poses_of(const Clip& clip, const MotionPiece& piece, int64_t stride) {
+    const int64_t end = std::min(piece.end, clip.frames());
+    const int64_t rows = std::max<int64_t>((end - piece.first + stride - 1) / stride, 0);
+    Clip part{clip.skeleton, MatrixF(rows, clip.motion.cols()), clip.rate};
+    for (int64_t row = 0; row < rows; ++row) {
+        part.motion.row(row) = clip.motion.row(piece.first + row * stride);
+    }
+    return normalised_markers(*clip.skeleton, part.motion, joint_positions(part));
+}
+
+MotionRun run_of(const MotionPiece& piece) {
+    return {.clip = piece.clip,
+            .first = static_cast<double>(piece.first),
+            .end = static_cast<double>(piece.end)};
+}
+
+/// Frames from one pose that is compared to the next: fine enough for the rate, and for pieces
+/// that are short.
+int64_t stride_of(const MotionPiece& entry, const MotionPiece& exit, double rate) {
+    constexpr double poses_a_second = 30;
+    constexpr int64_t fewest_poses = 16;
+    const int64_t finest = std::min(entry.frames(), exit.frames()) / fewest_poses;
+    return std::clamp<int64_t>(finest, 1,
+                               std::max<int64_t>(std::llround(rate / poses_a_second), 1));
+}
+
+}  // namespace
+
+WalkClips::WalkClips(const StoredGraph& graph, const ClipSource& source, const WalkOptions& options,
+                     const std::string& body)
+    : graph_(graph),
+      source_(source),
+      options_(options),
+      body_(body),
+      clips_(graph.clips.size()),
+      supports_(graph.clips.size()),
+      largest_steps_(graph.clips.size()) {
+    const std::string body_class = source.kind(body).clip_class;
+    const std::string clip_class = source.kind(graph.clips.front()).clip_class;
+    if (body_class != clip_class) {
+        throw UsageError(
+            fmt::format("--body {}: it is of class {}, the walk's {}s of class {}; name a "
+                        "clip of that class",
+                        quote_for_message(body), body_class, graph.nodes.style.piece, clip_class));
+    }
+    skeleton_ = source.read(body).skeleton;
+}
+
+const Clip& WalkClips::clip(int32_t number) {
+    const auto at = static_cast<size_t>(number);
+    Clip& clip = clips_[at];
+    if (clip.skeleton) return clip;
+    clip = retarget(resample(source_.read(graph_.clips[at]), graph_.rate), skeleton_);
+    const auto contacts = foot_contacts(*clip.skeleton, joint_positions(clip), clip.rate);
+    supports_[at] = foot_support(contacts, clip.rate);
+    const std::vector<double> steps = pose_steps(clip);
+    for (const MotionPiece& piece : graph_.nodes.graph.pieces()) {
+        if (piece.clip == number) {
+            largest_steps_[at] = std::max(largest_steps_[at], largest_step(steps, run_of(piece)));
+        }
+    }
+    return clip;
+}
+
+const Crossing& WalkClips::crossing(int32_t entry, int32_t exit) {
+    const auto [found, is_new] = crossings_.try_emplace({entry, exit});
+    Crossing& crossing = found->second;
+    if (!is_new) return crossing;
+    const MotionPiece& in = graph_.nodes.graph.piece(entry);
+    const MotionPiece& out = graph_.nodes.graph.piece(exit);
+    const int64_t stride = stride_of(in, out, graph_.rate);
+    const auto rows = static_cast<double>(stride);
+    const Crossing fade = fade_lengths(in, out, fade_frames());
+    crossing =
+        best_crossing(poses_of(clip(in.clip), in, stride), poses_of(clip(out.clip), out, stride),
+                      fade.entry / rows, fade.exit / rows);
+    crossing.entry *= rows;
+    crossing.exit *= rows;
+    if (!options_.registered) crossing.registration.clear();
+    return crossing;
+}
+
+std::vector<MotionRun> WalkClips::runs(const GraphWalk& walk) {
+    const MotionGraph& graph = graph_.nodes.graph;
+    for (const WalkStep& step : walk.steps) clip(graph.piece(step.entry).clip);
+    return runs_of_walk(graph, walk.steps, fade_frames(),
+                        [&](int32_t entry, int32_t exit) { return crossing(entry, exit); });
+}
+
+double WalkClips::excess(int32_t entry, int32_t exit) {
+    if (entry == exit) return 0;
+    const auto [found, is_new] = excesses_.try_emplace({entry, exit});
+    if (!is_new) return found->second;
+    const auto node = graph_.nodes.graph.node_of(entry);
+    std::vector<MotionRun> there = runs({.steps = {{node, entry, exit}}});
+    there.front().first -= 2;  // what is a frame long leaps from the frames before to those after
+    there.back().end += 2;
+    const Clip played = play_runs(clips_, there, supports_);
+    double allowed = 0;
+    for (const MotionRun& run : there) {
+        allowed = std::max(allowed, largest_steps_[static_cast<size_t>(run.clip)]);
+    }
+    const MotionRun whole{.first = 0, .end = static_cast<double>(played.frames())};
+    return found->second = largest_step(pose_steps(played), whole) - allowed;
+}
+
+}  // namespace kinetome

@@ -1,0 +1,49 @@
+// The clips that a walk plays, on one body and at one rate, and how it goes over between them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinetome/models/graph_walk.h"
+#include "kinetome/stages/primitive_walk.h"
+
+namespace kinetome {
+
+/// Read and measured when they are first asked for. Keeps references to graph, source and options.
+class WalkClips {
+  public:
+    /// Throws UsageError for a body of another class.
+    WalkClips(const StoredGraph& graph, const ClipSource& source, const WalkOptions& options,
+              const std::string& body);
+
+    const std::string& body() const { return body_; }
+    /// By number in the graph; those not yet asked for have no frames.
+    const std::vector<Clip>& clips() const { return clips_; }
+    const ClipSupports& supports() const { return supports_; }
+
+    /// What the walk plays (runs_of_walk).
+    std::vector<MotionRun> runs(const GraphWalk& walk);
+    /// How much faster the pose changes at most, going over from the one to the other, than in any
+    /// piece of their clips, cm/s.
+    double excess(int32_t entry, int32_t exit);
+
+  private:
+    const Clip& clip(int32_t number);
+    const Crossing& crossing(int32_t entry, int32_t exit);
+    double fade_frames() const { return options_.fade_seconds * graph_.rate; }
+
+    const StoredGraph& graph_;
+    const ClipSource& source_;
+    const WalkOptions& options_;
+    std::string body_;
+    std::shared_ptr<const Skeleton> skeleton_;
+    std::vector<Clip> clips_;
+    ClipSupports supports_;
+    std::vector<double> largest_steps_;  ///< pose steps, of the pieces of each clip
+    std::map<std::pair<int32_t, int32_t>, Crossing> crossings_;
+    std::map<std::pair<int32_t, int32_t>, double> excesses_;
+};
+
+}  // namespace kinetome
