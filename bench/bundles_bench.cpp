@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "cost.h"
-#include "kinetome/base/random.h"
+#include "found_bundles.h"
 #include "kinetome/formats/annotation.h"
 #include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/bundle_score.h"
@@ -26,6 +26,10 @@
 namespace {
 
 using namespace kinetome;
+using bench::add_noise;
+using bench::find;
+using bench::Found;
+using bench::score;
 namespace fs = std::filesystem;
 
 struct Options {
@@ -64,41 +68,6 @@ std::vector<FrameClasses> classes_of(const bench::PoseTakes& takes, const Labels
         classes.push_back(std::move(of_take));
     }
     return classes;
-}
-
-struct Found {
-    std::vector<SubstringBundle> bundles;
-    double seconds = 0;
-};
-
-Found find(const bench::SpelledTakes& takes, const MotionBundleOptions& options, int threads,
-           double tau_factor = 1) {
-    AccessibilityMatrix accessible = accessibility(takes.mixture, tau_factor * takes.tau, threads);
-    if (options.spread == BundleSpread::closure_near) {
-        accessible = within_step(accessible, takes.mixture,
-                                 median_adjacent_step(takes.string, takes.mixture));
-    }
-    Found found;
-    found.seconds = bench::cost_of([&] {
-                        found.bundles = find_motion_bundles(takes.string, accessible, takes.lambda,
-                                                            options, {.threads = threads});
-                    }).wall;
-    return found;
-}
-
-BundleScore score(const MotionString& string, const std::vector<SubstringBundle>& bundles,
-                  const std::vector<FrameClasses>& classes) {
-    std::vector<MotionPiece> members;
-    std::vector<int32_t> bundle_of;
-    for (size_t b = 0; b < bundles.size() && !bundles[b].is_degenerate(); ++b) {
-        for (const Substring& member : bundles[b].members) {
-            members.push_back({string.clip[static_cast<size_t>(member.first)],
-                               static_cast<int64_t>(string.mean_frame(member.first)),
-                               static_cast<int64_t>(string.mean_frame(member.last))});
-            bundle_of.push_back(static_cast<int32_t>(b));
-        }
-    }
-    return score_bundles(members, bundle_of, classes);
 }
 
 const std::vector<std::vector<std::string>> labelled_sets = {
@@ -183,17 +152,6 @@ std::string largest_of(const MotionString& string, const std::vector<SubstringBu
     std::string text;
     for (size_t i = 0; i < std::min<size_t>(all.size(), 6); ++i) text += " " + all[i].second;
     return text;
-}
-
-/// Pose vectors with noise of a tenth of each column's standard deviation.
-void add_noise(bench::PoseTakes& takes) {
-    RandomStream random(1, "bundles bench noise");
-    for (Eigen::Index column = 0; column < takes.poses.cols(); ++column) {
-        const auto values = takes.poses.col(column).cast<double>();
-        const double deviation = std::sqrt((values.array() - values.mean()).square().mean());
-        for (Eigen::Index row = 0; row < takes.poses.rows(); ++row)
-            takes.poses(row, column) += static_cast<float>(0.1 * deviation * random.normal());
-    }
 }
 
 /// Groups of nodes that edges join in either direction.
