@@ -51,6 +51,7 @@ Command diff_command();
 Command export_command();
 Command evaluate_command();
 Command estimate_command();
+Command bundles_command();
 Command walk_command();
 Command label_command();
 Command query_command();

@@ -33,11 +33,11 @@ std::string command_line(int argc, char** argv) {
 }
 
 std::vector<Command> all_commands() {
-    return {reindex_command(),   ingest_command(), plan_command(),     publish_command(),
-            generate_command(),  info_command(),   verify_command(),   gc_command(),
-            diff_command(),      export_command(), evaluate_command(), label_command(),
-            estimate_command(),  walk_command(),   query_command(),    compress_command(),
-            decompress_command()};
+    return {reindex_command(),  ingest_command(),    plan_command(),     publish_command(),
+            generate_command(), info_command(),      verify_command(),   gc_command(),
+            diff_command(),     export_command(),    evaluate_command(), label_command(),
+            estimate_command(), bundles_command(),   walk_command(),     query_command(),
+            compress_command(), decompress_command()};
 }
 
 /// All ranks refuse alike; rank 0 says why.

@@ -2,21 +2,29 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "kinetome/base/error.h"
+#include "kinetome/base/file.h"
+#include "kinetome/models/bundle_members.h"
 #include "kinetome/stages/bundle_file.h"
+#include "kinetome/stages/options.h"
 
 namespace kinetome {
 
 namespace {
 
-/// Members of nodes, at the sources' rates.
-std::vector<ClipPrimitive> node_members(const Generation& generation) {
+void require_bundles(const Generation& generation) {
     if (!generation.ledger().find("bundle_graph.h5")) {
         throw UsageError(
             "the store has no motion bundles yet; kinetome reindex CORPUS --store STORE makes "
             "them");
     }
+}
+
+/// Members of nodes, at the sources' rates.
+std::vector<ClipPrimitive> node_members(const Generation& generation) {
+    require_bundles(generation);
     const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
     const auto node_of = read_bundle_graph(generation.open("bundle_graph.h5"), bundles).node_of;
     std::vector<ClipPrimitive> members;
@@ -28,10 +36,38 @@ std::vector<ClipPrimitive> node_members(const Generation& generation) {
             .clip = clip.name,
             .first = source_boundary(clip, member.frames.first, bundles.pose_rate),
             .end = source_boundary(clip, member.frames.end, bundles.pose_rate),
-            .cluster = node};
+            .cluster = member.bundle};
         if (piece.first < piece.end) members.push_back(piece);  // else shorter than a source frame
     }
     return members;
+}
+
+double rho_of(const Generation& generation) {
+    const std::filesystem::path file = generation.folder() / "config.toml";
+    ReindexOptions options;
+    parse_configuration(read_file(file), file.string(), options);
+    return options.bundles.rho;
+}
+
+int64_t height_of(const StoredGraph& graph, int32_t node) {
+    return static_cast<int64_t>(graph.nodes.graph.members(node).size());
+}
+
+/// The mean length, in frames at the graph's rate.
+double width_of(const StoredGraph& graph, int32_t node) {
+    double frames = 0;
+    for (const int32_t piece : graph.nodes.graph.members(node)) {
+        frames += static_cast<double>(graph.nodes.graph.piece(piece).frames());
+    }
+    return frames / static_cast<double>(height_of(graph, node));
+}
+
+int64_t takes_of(const StoredGraph& graph, int32_t node) {
+    std::set<int32_t> takes;
+    for (const int32_t piece : graph.nodes.graph.members(node)) {
+        takes.insert(graph.nodes.graph.piece(piece).clip);
+    }
+    return static_cast<int64_t>(takes.size());
 }
 
 }  // namespace
@@ -41,6 +77,35 @@ std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
     std::vector<ClipPrimitive> members = node_members(open.generation);
     label_from_table(members, open, labels);
     return members;
+}
+
+Table bundle_list(const OpenStore& open, const std::filesystem::path& labels) {
+    const Generation& generation = open.generation;
+    const WalkOptions walk = options_of_bundle_walk({});
+    const StoredGraph graph = stored_graph(stored_bundle_members(open, labels),
+                                           clip_source(generation), walk.longest_gap, walk.style);
+    const double rho = rho_of(generation);
+    Table table{{"bundle", "label", "height", "width", "volume", "takes"}, {}};
+    std::vector<std::pair<double, int32_t>> largest_first;
+    for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
+        largest_first.emplace_back(
+            -bundle_volume(height_of(graph, node), width_of(graph, node), rho), node);
+    }
+    std::ranges::sort(largest_first);
+    for (const auto& [volume, node] : largest_first) {
+        const auto at = static_cast<size_t>(node);
+        table.rows.push_back({int64_t{graph.nodes.cluster_of[at]}, graph.nodes.label_of[at],
+                              height_of(graph, node), width_of(graph, node), -volume,
+                              takes_of(graph, node)});
+    }
+    return table;
+}
+
+BundleShares bundle_shares(const Generation& generation) {
+    require_bundles(generation);
+    const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
+    return {.frames = read_bundle_graph(generation.open("bundle_graph.h5"), bundles).bundles.frames,
+            .file_bytes = generation.ledger().find("bundles.h5")->file.bytes};
 }
 
 BundleScore stored_bundle_score(const Generation& generation, std::span<const TruthRow> truth) {

@@ -1,6 +1,7 @@
 // What `walk` and the export of its graph promise.
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "program.h"
 #include "store_on_disk.h"
@@ -162,6 +163,21 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
         require_program({"export", store.path, "bundle-graph", "--format", "dot"}).output;
     CHECK(dot.starts_with("digraph bundles {"));
     CHECK(contains(dot, "fixedsize=true, width="));
+
+    // The numbers of bundles are the same wherever they are told.
+    const auto list = lines_of(require_program({"bundles", store.path, "--format", "csv"}).output);
+    CHECK(list.front() == "bundle,label,height,width,volume,takes");
+    REQUIRE(list.size() > 10);
+    int64_t exported = 0, listed = 0;
+    const std::string largest = list[1].substr(0, list[1].find(','));
+    for (const std::string& row : rows) exported += row.starts_with(largest + ",");
+    std::istringstream first(list[1].substr(list[1].find(',', largest.size() + 1) + 1));
+    first >> listed;
+    CHECK(listed == exported);
+    CHECK(contains(require_program(walk({"--from", largest})).output, "bundle " + largest));
+    const std::string told = require_program({"bundles", store.path}).output;
+    CHECK(contains(told, "dangling frames"));
+    CHECK(contains(told, "bundles.h5"));
 
     const auto score =
         lines_of(require_program({"evaluate", store.path, "--what", "bundles", "--truth",

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/bundle_score.h"
 #include "kinetome/stages/export.h"
 #include "kinetome/stages/primitive_walk.h"
@@ -13,10 +14,23 @@
 namespace kinetome {
 
 /// Members of the bundles that are nodes of the bundle graph, by clip and frame, labelled
-/// (label_from_table). Their cluster is the node's number. Throws UsageError when the generation
+/// (label_from_table). Their cluster is the bundle's number. Throws UsageError when the generation
 /// has no bundles.
 std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
                                                  const std::filesystem::path& labels = {});
+
+/// Bundles that are nodes, those of largest volume (S1 Eq. 3, the generation's ρ) first:
+/// bundle,label,height,width,volume,takes; the label that most members have (label_from_table), the
+/// width in frames at the rate of most members. Throws UsageError when the generation has none.
+Table bundle_list(const OpenStore& open, const std::filesystem::path& labels = {});
+
+/// Where the frames of the takes are, and how large bundles.h5 is.
+struct BundleShares {
+    BundleGraphFrames frames;  ///< at the pose rate
+    uint64_t file_bytes = 0;
+};
+/// Throws UsageError when the generation has no bundles.
+BundleShares bundle_shares(const Generation& generation);
 
 /// Through bundles: going over lasts as long as both members do, and what lies between two members
 /// of a clip is a transition however long it is (S1 §4).
