@@ -121,20 +121,32 @@ class StretchCutter {
         }
         if (depth < deepest_search) found = with_gaps_cut(found, stretch.end, period, depth);
         move_to(stretch.first, found);
-        const bool leaves_little =
-            double(stretch.end - found.back()) < options_.least_piece * period;
-        if (leaves_little && !ends_take(stretch)) found.pop_back();
+        if (!ends_take(stretch) && leaves_little(stretch, found, period)) found.pop_back();
         return found;
+    }
+
+    /// Whether what begins last is too little of the movement to stand by itself. It may last for
+    /// long all the same: in the pose that the movement ends with, which is like its first.
+    bool leaves_little(const RowRange& stretch, const std::vector<int64_t>& starts,
+                       double period) const {
+        const double lasts = double(stretch.end - starts.back()) / period;
+        return lasts < options_.least_piece ||
+               (starts.size() > 1 && executed(stretch, starts) < options_.least_piece);
     }
 
     bool ends_take(const RowRange& stretch) const { return stretch.end == features_.rows(); }
 
     /// Whether the end of the take cuts off what began last. Where a movement gives way to another
     /// it is taken to be complete: when that happens cannot be told so exactly.
-    bool breaks_off(const RowRange& activity, std::vector<int64_t> starts) const {
-        if (starts.size() < 2 || !ends_take(activity)) return false;
-        for (int64_t& frame : starts) frame -= activity.first;
-        return share_executed({features_, activity}, starts, side_) < options_.least_executed;
+    bool breaks_off(const RowRange& activity, const std::vector<int64_t>& starts) const {
+        return starts.size() > 1 && ends_take(activity) &&
+               executed(activity, starts) < options_.least_executed;
+    }
+
+    /// The share of the movement, begun at the last of at least two starts, that the stretch holds.
+    double executed(const RowRange& stretch, std::vector<int64_t> starts) const {
+        for (int64_t& frame : starts) frame -= stretch.first;
+        return share_executed({features_, stretch}, starts, side_);
     }
 
     RidgeRule rule_for(int64_t known_period, int64_t spacing) const {

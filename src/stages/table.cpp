@@ -73,7 +73,7 @@ const std::vector<StageRow>& stage_table() {
         {.name = "primitives",
          .inputs = {"features", "neighbors", "segments"},
          .sharded = false,
-         .format_version = 2,
+         .format_version = 3,
          .description = "executions of movements, and which are the same (S3 §3.2, §4)",
          .make = make_primitives},
         {.name = "corpus_neighbors",

@@ -160,6 +160,19 @@ TEST_CASE("how long a movement pauses does not decide when it begins anew") {
     }
 }
 
+TEST_CASE("a rest after a movement is no further movement, however long it lasts") {
+    for (const auto& [before, after] : {std::pair{50, 40}, {60, 60}, {70, 60}, {40, 80}}) {
+        CAPTURE(before, after);
+        toy::Motion motion;
+        motion.hold(before, 0).raise(1, 90, 1).hold(after, 0);
+        const int64_t end = before + 90 + after;
+        const MatrixF rows = motion.circle(2, 50, 3).rows();
+        const auto primitives = primitives_of(rows, {{{0, end}, SegmentKind::activity, 0},
+                                                     {{end, end + 100}, SegmentKind::activity, 1}});
+        CHECK(std::ranges::count(primitives, 0, &Primitive::activity) == 1);
+    }
+}
+
 TEST_CASE("where nothing recurs an activity is one primitive: a hold, a single movement") {
     const MatrixF still = toy::Motion().hold(300, 50).rows(0.3);
     const MatrixF once = toy::Motion().circle(1, 80, 0).rows();

@@ -24,10 +24,11 @@ struct CostRidgeOptions {
     double periodic_ridge_share = 0.2;  ///< … by this where it has one
     double least_dip = 0.05;  ///< a period is the shortest lag at which the mean cost dips by this
                               ///< share of its top at shorter lags, and by …
-    double dip_of_deepest = 0.3;   ///< … this share of what its deepest dip has
-    double least_spacing = 0.75;   ///< periods between two repetitions
-    double longest_gap = 1.6;      ///< periods; a longer stretch is searched by itself
-    double least_piece = 0.4;      ///< periods; what is left at the end, if shorter, joins the last
+    double dip_of_deepest = 0.3;  ///< … this share of what its deepest dip has
+    double least_spacing = 0.75;  ///< periods between two repetitions
+    double longest_gap = 1.6;     ///< periods; a longer stretch is searched by itself
+    double least_piece = 0.4;  ///< periods; what is left at the end, if shorter, or if it executes
+                               ///< less of the movement than this, joins the last
     double least_executed = 0.95;  ///< share of a movement that the end of the take cuts off, from
                                    ///< which it counts as a primitive
 };
