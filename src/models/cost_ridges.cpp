@@ -109,13 +109,12 @@ class StretchCutter {
     /// Ascending from the stretch's first frame. `spacing` is the least between two.
     std::vector<int64_t> starts(const RowRange& stretch, int64_t spacing, int depth) const {
         const FrameDistances distances(features_, stretch);
-        const int64_t known_period = movement_period(
+        const MovementPeriod known = movement_period(
             distances, {shortest_, side_, options_.least_dip, options_.dip_of_deepest});
-        std::vector<int64_t> found =
-            clearest_repetitions(distances, rule_for(known_period, spacing));
+        std::vector<int64_t> found = clearest_repetitions(distances, rule_for(known, spacing));
         if (found.empty()) return {stretch.first};
         for (int64_t& frame : found) frame += stretch.first;
-        const double period = known_period > 0 ? double(known_period) : median_spacing(found);
+        const double period = known.frames > 0 ? double(known.frames) : median_spacing(found);
         if (double(found.front() - stretch.first) > longest_shift * period) {
             found.insert(found.begin(), stretch.first);
         }
@@ -149,11 +148,12 @@ class StretchCutter {
         return share_executed({features_, stretch}, starts, side_);
     }
 
-    RidgeRule rule_for(int64_t known_period, int64_t spacing) const {
+    RidgeRule rule_for(const MovementPeriod& known, int64_t spacing) const {
         RidgeRule rule{options_.radius, options_.least_ridge, options_.ridge_share, spacing, side_};
-        if (known_period > 0) {
-            rule.ridge_share = options_.periodic_ridge_share;
-            rule.least_spacing = frame_count(options_.least_spacing, double(known_period));
+        if (known.frames > 0) {
+            // Whose mean cost is hardly lower a period apart cannot have higher ridges.
+            rule.ridge_share = std::min(options_.periodic_ridge_share, known.dip);
+            rule.least_spacing = frame_count(options_.least_spacing, double(known.frames));
         }
         return rule;
     }

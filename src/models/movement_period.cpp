@@ -17,16 +17,11 @@ VectorD mean_cost_at_lags(const FrameDistances& activity, int64_t side) {
     return sums;
 }
 
-/// A lag at which the mean cost is least, and how far that is below its top at shorter ones.
-struct Dip {
-    int64_t lag = 0;
-    double share = 0;
-};
-
-std::vector<Dip> dips_of(const VectorD& costs, int64_t shortest) {
+/// Lags at which the mean cost is less than at those beside them.
+std::vector<MovementPeriod> dips_of(const VectorD& costs, int64_t shortest) {
     // With more, fewer than half as many frames as the lag has are left to tell.
     const int64_t longest = std::min(2 * costs.size() / 3, costs.size() - 2);
-    std::vector<Dip> dips;
+    std::vector<MovementPeriod> dips;
     double top = 0;
     for (int64_t lag = 1; lag <= longest; ++lag) {
         top = std::max(top, costs[lag]);
@@ -38,13 +33,13 @@ std::vector<Dip> dips_of(const VectorD& costs, int64_t shortest) {
 
 }  // namespace
 
-int64_t movement_period(const FrameDistances& activity, const PeriodRule& rule) {
-    const std::vector<Dip> dips = dips_of(mean_cost_at_lags(activity, rule.side), rule.shortest);
+MovementPeriod movement_period(const FrameDistances& activity, const PeriodRule& rule) {
+    const auto dips = dips_of(mean_cost_at_lags(activity, rule.side), rule.shortest);
     double least = rule.least_dip;
-    for (const Dip& dip : dips) least = std::max(least, rule.same_dip * dip.share);
+    for (const auto& [lag, dip] : dips) least = std::max(least, rule.same_dip * dip);
     const auto found =
-        std::ranges::find_if(dips, [&](const Dip& dip) { return dip.share >= least; });
-    return found == dips.end() ? 0 : found->lag;
+        std::ranges::find_if(dips, [&](const auto& period) { return period.dip >= least; });
+    return found == dips.end() ? MovementPeriod() : *found;
 }
 
 }  // namespace kinetome

@@ -21,7 +21,8 @@ struct CostRidgeOptions {
     double path_side = 8.0 / 30;  ///< that a path extends to either side of the pair it is for
     double least_ridge = 1.5;     ///< by so much the cost rises between two repetitions, and by …
     double ridge_share = 0.35;  ///< … this share of its top, where the activity has no period, or …
-    double periodic_ridge_share = 0.2;  ///< … by this where it has one
+    double periodic_ridge_share = 0.2;  ///< … by this where it has one, but by no more than
+                                        ///< the mean cost dips by a period apart
     double least_dip = 0.05;  ///< a period is the shortest lag at which the mean cost dips by this
                               ///< share of its top at shorter lags, and by …
     double dip_of_deepest = 0.3;  ///< … this share of what its deepest dip has
