@@ -55,6 +55,7 @@ const Corpus& corpus() {
 }  // namespace
 
 TEST_CASE("a walk lasts as long as was wanted and moves no joint faster than the takes do") {
+    double jolt = 0, jolt_of_cuts = 0;
     for (const uint64_t seed : {1, 2, 3}) {
         const auto walk = corpus().walk({.seconds = 20, .seed = seed});
         CHECK_FALSE(walk.ended_early);
@@ -63,10 +64,13 @@ TEST_CASE("a walk lasts as long as was wanted and moves no joint faster than the
         CHECK(walk.path.size() == walk.nodes.size());
         CHECK(walk.quality.peaks.speed < 1.1 * walk.quality.peaks_in_takes.speed);
         CHECK(walk.quality.peaks.acceleration < 1.1 * walk.quality.peaks_in_takes.acceleration);
-        // What fading is for:
+        CHECK(walk.quality.pose_step <= walk.quality.pose_step_in_takes);
+        // What fading is for; a walk may find its way past the hardest cuts.
         const auto cut = corpus().walk({.seconds = 20, .seed = seed, .fade_seconds = 0});
-        CHECK(cut.quality.peaks.acceleration > 3 * walk.quality.peaks.acceleration);
+        jolt = std::max(jolt, walk.quality.peaks.acceleration);
+        jolt_of_cuts = std::max(jolt_of_cuts, cut.quality.peaks.acceleration);
     }
+    CHECK(jolt_of_cuts > 3 * jolt);
 }
 
 TEST_CASE("a seed gives one walk, to the bit") {
