@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 namespace kinetome {
 namespace {
@@ -19,12 +20,16 @@ MatrixD least_norm_solution(const MatrixD& a, const MatrixD& b) {
     return solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() * b));
 }
 
-/// What the parent's map weighs, as sums over poses.
-MatrixD parent_part(const MarkerMap* parent, int64_t principal, const MarkerMapOptions& options) {
-    const double noise = options.noise / mm_per_cm;
-    MatrixD part = MatrixD::Identity(principal, principal) * (noise * noise);
-    if (parent) part += options.parent_weight * parent->principal_covariance;
-    return part;
+/// What the parent's map weighs against those of `count` poses, as sums over poses. Noise is part
+/// of every pose: a leaf's poses that differ by less than it do not tell where its map should
+/// differ.
+MatrixD parent_part(const MarkerMap* parent, int64_t principal, int64_t count,
+                    const MarkerMapOptions& options) {
+    const double noise = std::pow(options.noise / mm_per_cm, 2);
+    const MatrixD identity = MatrixD::Identity(principal, principal);
+    if (!parent) return noise * identity;
+    return options.parent_weight * parent->principal_covariance +
+           noise * (static_cast<double>(count) + options.parent_weight) * identity;
 }
 
 }  // namespace
@@ -40,7 +45,7 @@ MarkerMap fit_marker_map(const Moments& poses, const std::vector<int32_t>& princ
         result.map = least_norm_solution(inner, between);
         return result;
     }
-    const MatrixD weight = parent_part(parent, inner.rows(), options);
+    const MatrixD weight = parent_part(parent, inner.rows(), poses.count, options);
     MatrixD target = between;
     if (parent) target.noalias() += weight * parent->map;
     result.map = MatrixD(inner + weight).llt().solve(target);

@@ -37,7 +37,7 @@ const std::vector<StageRow>& stage_table() {
         {.name = "pose_hierarchy",
          .inputs = {"features"},
          .sharded = false,
-         .format_version = 1,
+         .format_version = 2,
          .description = "principal markers and a tree of local linear models (S2 §3, §4)",
          .make = make_pose_hierarchy},
         {.name = "bundles",

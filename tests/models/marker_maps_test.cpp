@@ -1,8 +1,10 @@
 #include "kinetome/models/marker_maps.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "kinetome/base/random.h"
 #include "kinetome/models/hierarchy_growth.h"
 #include "toy_poses.h"
 
@@ -72,6 +74,30 @@ TEST_CASE("the root's map is least squares against a little noise") {
     // Without poses of its own a child has its parent's map.
     Moments nothing{1, moments.mean, MatrixD::Zero(18, 18)};
     CHECK(fit_marker_map(nothing, principal, &map, {}).map.isApprox(map.map, 1e-9));
+}
+
+TEST_CASE("a leaf whose markers move less than the noise keeps its parent's map") {
+    // Two principal markers that go together but for a millimetre, which the other one magnifies a
+    // hundred times in these poses, and not at all in those of the parent.
+    RandomStream random(5, "noise");
+    MatrixF poses = MatrixF::Zero(20000, 12);
+    for (int64_t i = 0; i < poses.rows(); ++i) {
+        const auto swing = float(20 * random.normal()), apart = float(0.1 * random.normal());
+        poses(i, 3) = swing;
+        poses(i, 6) = swing + apart;
+        poses(i, 9) = swing + 100 * apart;
+    }
+    const Columns known{3, 6};
+    const auto others = estimated_columns(12, known);
+    const auto estimated = std::ranges::find(others, 9) - others.begin();
+    const MarkerMap parent{MatrixD::Zero(2, 10), MatrixD::Identity(2, 2)};
+    const auto slope = [&](double noise) {
+        MarkerMapOptions options;
+        options.noise = noise;
+        return fit_marker_map(moments_of(poses), known, &parent, options).map(1, estimated);
+    };
+    CHECK(std::abs(slope(5)) < 5);
+    CHECK(slope(0.01) > 1.5 * std::abs(slope(5)));  // what it is kept from
 }
 
 TEST_CASE("blending takes the jump out of estimates where the leaf changes") {

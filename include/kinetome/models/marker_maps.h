@@ -19,8 +19,9 @@ enum class MarkerMapRule {
 
 struct MarkerMapOptions {
     MarkerMapRule rule = MarkerMapRule::shrinkage;  ///< how a leaf's map is found
-    double parent_weight = 1000;  ///< shrinkage: the parent's map counts as so many poses
-    double noise = 5;             ///< shrinkage: mm of a marker that no map should follow
+    double parent_weight = 5000;  ///< shrinkage: the parent's map counts as so many poses
+    double noise = 5;             ///< shrinkage: mm; where a marker moves less, in a leaf, its map
+                                  ///< is the parent's
 };
 
 /// What a node tells its children about their maps.
@@ -33,9 +34,10 @@ void pack(Packer& out, const MarkerMap& map);
 void unpack(Unpacker& in, MarkerMap& map);
 
 /// The map of the poses with these moments (f); `parent`: the node's above, null at the root.
-/// With a = the principal values, b = the others, both about their means, κ = parent_weight and
-/// P = the parent's covariance, shrinkage takes
-///   (aᵀa + κ P + noise² I)⁻¹ (aᵀb + (κ P + noise² I) map of the parent).
+/// With a = the principal values of n poses, b = the others, both about their means, κ =
+/// parent_weight and P = the parent's covariance, shrinkage takes
+///   (aᵀa + W)⁻¹ (aᵀb + W map of the parent),   W = κ P + (n + κ) noise² I;
+/// at the root W = noise² I, against a map of 0.
 MarkerMap fit_marker_map(const Moments& poses, const std::vector<int32_t>& principal_columns,
                          const MarkerMap* parent, const MarkerMapOptions& options);
 
@@ -59,6 +61,6 @@ VectorD estimate_pose(const PoseHierarchy& hierarchy, const MarkerMaps& maps,
 
 /// The band that estimates are blended in unless told otherwise, half gaps: removes most of the
 /// jump where the leaf changes.
-inline constexpr double default_blend_band = 0.3;
+inline constexpr double default_blend_band = 0.6;
 
 }  // namespace kinetome
