@@ -57,7 +57,9 @@ struct Query {
 class Collection {
   public:
     Collection(const std::vector<MarkerTake>& takes, const PoseHierarchy& hierarchy, int threads)
-        : hierarchy_(hierarchy), index_(index_of(takes, hierarchy, threads)) {
+        : hierarchy_(hierarchy),
+          axes_(signature_axes(hierarchy)),
+          index_(index_of(takes, hierarchy, axes_, threads)) {
         Moments moments = moments_of(takes.front().markers);
         for (size_t i = 1; i < takes.size(); ++i) merge(moments, moments_of(takes[i].markers));
         // One scale for all columns: distances stay those of the markers.
@@ -83,7 +85,7 @@ class Collection {
     }
 
     std::vector<IndexedMatch> by_signature(const Query& query, int64_t k) const {
-        return index_.search(make_signature(leaves_of(hierarchy_, query.markers)), k, {});
+        return index_.search(placed(query.markers, hierarchy_, axes_), k, {});
     }
 
     std::vector<IndexedMatch> by_signature_and_rerank(const Query& query, int64_t k) const {
@@ -122,15 +124,21 @@ class Collection {
 
   private:
     static SignatureIndex index_of(const std::vector<MarkerTake>& takes,
-                                   const PoseHierarchy& hierarchy, int threads) {
-        std::vector<Signature> signatures(takes.size());
+                                   const PoseHierarchy& hierarchy, const MatrixF& axes,
+                                   int threads) {
+        std::vector<PlacedSignature> signatures(takes.size());
         tbb::parallel_for(size_t(0), takes.size(), [&](size_t i) {
-            signatures[i] = make_signature(leaves_of(hierarchy, takes[i].markers));
+            signatures[i] = placed(takes[i].markers, hierarchy, axes);
         });
-        return SignatureIndex(signatures, leaf_positions(hierarchy.means), {}, threads);
+        return SignatureIndex(signatures, positions_of(hierarchy.means, axes), {}, threads);
+    }
+    static PlacedSignature placed(const MatrixF& markers, const PoseHierarchy& hierarchy,
+                                  const MatrixF& axes) {
+        return place_signature(make_signature(leaves_of(hierarchy, markers)), markers, axes);
     }
 
     const PoseHierarchy& hierarchy_;
+    MatrixF axes_;
     SignatureIndex index_;
     Pca pca_;
     std::vector<MatrixF> features_;

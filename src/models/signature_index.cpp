@@ -3,26 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "kinetome/base/parallel.h"
-#include "kinetome/models/pose_hierarchy.h"
 #include "signature_places.h"
 
 namespace kinetome {
 namespace {
 
-ValueLists<SignatureRun> joined(const std::vector<Signature>& clips) {
+void check_shape(const PlacedSignature& signature, int64_t columns) {
+    const auto runs = static_cast<int64_t>(signature.runs.size());
+    const MatrixF& positions = signature.positions;
+    if (runs == 0 || (positions.rows() == runs && positions.cols() == columns)) return;
+    throw std::invalid_argument(
+        fmt::format("{} × {} positions were given for a signature of {} runs, of {} values each",
+                    positions.rows(), positions.cols(), runs, columns));
+}
+
+ValueLists<SignatureRun> joined_runs(const std::vector<PlacedSignature>& clips) {
     ValueLists<SignatureRun> lists;
-    for (const Signature& clip : clips) {
-        lists.values.insert(lists.values.end(), clip.begin(), clip.end());
+    for (const PlacedSignature& clip : clips) {
+        lists.values.insert(lists.values.end(), clip.runs.begin(), clip.runs.end());
         lists.first.push_back(static_cast<int64_t>(lists.values.size()));
     }
     return lists;
+}
+
+/// Throws std::invalid_argument unless every run has one, all of `columns` values.
+MatrixF joined_positions(const std::vector<PlacedSignature>& clips, int64_t columns) {
+    int64_t runs = 0;
+    for (const PlacedSignature& clip : clips) {
+        check_shape(clip, columns);
+        runs += static_cast<int64_t>(clip.runs.size());
+    }
+    MatrixF positions(runs, columns);
+    int64_t next = 0;
+    for (const PlacedSignature& clip : clips) {
+        if (clip.runs.empty()) continue;
+        positions.middleRows(next, clip.positions.rows()) = clip.positions;
+        next += clip.positions.rows();
+    }
+    return positions;
 }
 
 ValueLists<int32_t> occurrences_of(const std::vector<SignatureRun>& runs, int64_t leaves) {
@@ -92,12 +116,12 @@ bool all_below(const Values& values, int64_t bound, const Number& number) {
 }
 
 void check(const SignatureIndex::Parts& parts) {
-    const int64_t leaves = parts.positions.rows();
+    const int64_t leaves = parts.near_leaves.size();
     const auto runs = static_cast<int64_t>(parts.clips.values.size());
     const auto leaf_of_run = [](const SignatureRun& run) { return run.leaf; };
     const auto leaf_of_near = [](const NearLeaf& near) { return near.leaf; };
     if (is_whole(parts.clips) && is_whole(parts.occurrences) && is_whole(parts.near_leaves) &&
-        parts.occurrences.size() == leaves && parts.near_leaves.size() == leaves &&
+        parts.occurrences.size() == leaves && parts.positions.rows() == runs &&
         all_below(parts.clips.values, leaves, leaf_of_run) &&
         all_below(parts.occurrences.values, runs, std::identity()) &&
         all_below(parts.near_leaves.values, leaves, leaf_of_near)) {
@@ -106,55 +130,19 @@ void check(const SignatureIndex::Parts& parts) {
     throw std::invalid_argument("these are not the parts of a signature index");
 }
 
-/// Distances from the leaves of a query to others, measured when they are first asked for.
-class QueryDistances {
-  public:
-    QueryDistances(std::span<const SignatureRun> query, const MatrixF& positions)
-        : positions_(positions), column_of_(static_cast<size_t>(positions.rows()), -1) {
-        std::vector<int32_t> leaves;
-        for (const SignatureRun& run : query) leaves.push_back(run.leaf);
-        std::ranges::sort(leaves);
-        leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
-        query_positions_.resize(static_cast<Eigen::Index>(leaves.size()), positions.cols());
-        for (size_t i = 0; i < leaves.size(); ++i) {
-            query_positions_.row(static_cast<Eigen::Index>(i)) = positions.row(leaves[i]);
+/// Between positions (n × r and m × r), n × m.
+MatrixF distances_between(const MatrixFView& query, const MatrixFView& text) {
+    const MatrixF columns = text.transpose();  // values of one kind side by side, for vector units
+    MatrixF distances = MatrixF::Zero(query.rows(), text.rows());
+    for (Eigen::Index i = 0; i < query.rows(); ++i) {
+        auto row = distances.row(i).array();
+        for (Eigen::Index k = 0; k < query.cols(); ++k) {
+            row += (columns.row(k).array() - query(i, k)).square();
         }
-        for (const SignatureRun& run : query) {
-            rows_.push_back(std::ranges::lower_bound(leaves, run.leaf) - leaves.begin());
-        }
+        row = row.sqrt();
     }
-
-    /// Query runs × runs of a text.
-    MatrixF to(std::span<const SignatureRun> text) {
-        MatrixF distances(static_cast<Eigen::Index>(rows_.size()),
-                          static_cast<Eigen::Index>(text.size()));
-        for (size_t j = 0; j < text.size(); ++j) {
-            const VectorF& column = to_leaf(text[j].leaf);
-            for (size_t i = 0; i < rows_.size(); ++i) {
-                distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                    column[rows_[i]];
-            }
-        }
-        return distances;
-    }
-
-  private:
-    const VectorF& to_leaf(int32_t leaf) {
-        int32_t& column = column_of_[static_cast<size_t>(leaf)];
-        if (column < 0) {
-            column = static_cast<int32_t>(columns_.size());
-            columns_.emplace_back(
-                (query_positions_.rowwise() - positions_.row(leaf)).rowwise().norm());
-        }
-        return columns_[static_cast<size_t>(column)];
-    }
-
-    const MatrixF& positions_;
-    MatrixF query_positions_;         ///< of its different leaves
-    std::vector<Eigen::Index> rows_;  ///< of those, by run of the query
-    std::vector<int32_t> column_of_;  ///< by leaf
-    std::vector<VectorF> columns_;
-};
+    return distances;
+}
 
 bool is_before(const IndexedMatch& a, const IndexedMatch& b) {
     return std::tuple(a.match.distance, a.clip, a.match.frames.first, a.match.frames.end) <
@@ -178,19 +166,14 @@ std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int
     return kept;
 }
 
-MatrixF leaf_positions(const MatrixDView& means) {
-    constexpr double mm_per_cm = 10;
-    const auto markers = static_cast<double>(compared_markers(means.cols()));
-    return (means * (mm_per_cm / std::sqrt(markers))).cast<float>();
-}
-
-SignatureIndex::SignatureIndex(const std::vector<Signature>& clips, MatrixF positions,
-                               const SignatureIndexOptions& options, int threads) {
+SignatureIndex::SignatureIndex(const std::vector<PlacedSignature>& clips,
+                               const MatrixF& leaf_positions, const SignatureIndexOptions& options,
+                               int threads) {
     Parts parts;
-    parts.clips = joined(clips);
-    parts.occurrences = occurrences_of(parts.clips.values, positions.rows());
-    parts.near_leaves = near_leaves(positions, options, threads);
-    parts.positions = std::move(positions);
+    parts.clips = joined_runs(clips);
+    parts.positions = joined_positions(clips, leaf_positions.cols());
+    parts.occurrences = occurrences_of(parts.clips.values, leaf_positions.rows());
+    parts.near_leaves = near_leaves(leaf_positions, options, threads);
     parts.reach = options.reach;
     *this = SignatureIndex(std::move(parts));
 }
@@ -204,27 +187,32 @@ SignatureIndex::SignatureIndex(Parts parts) : parts_(std::move(parts)) {
     }
 }
 
-std::vector<IndexedMatch> SignatureIndex::search(std::span<const SignatureRun> query, int64_t k,
+std::vector<IndexedMatch> SignatureIndex::search(const PlacedSignature& query, int64_t k,
                                                  const SignatureSearchOptions& options) const {
-    if (query.empty()) return {};
+    if (query.runs.empty() || parts_.clips.values.empty()) return {};
+    check_shape(query, parts_.positions.cols());
     auto matches =
-        options.match.tolerance > 0 ? near_matches(query, options) : exact_matches(query);
+        options.match.tolerance > 0 ? near_matches(query, options) : exact_matches(query.runs);
     return nearest_matches(std::move(matches), k, options.match.overlap);
 }
 
 std::vector<IndexedMatch> SignatureIndex::near_matches(
-    std::span<const SignatureRun> query, const SignatureSearchOptions& options) const {
+    const PlacedSignature& query, const SignatureSearchOptions& options) const {
     SignatureMatchOptions match_options = options.match;
     // A short query is compared as often as one of a few seconds.
     constexpr int32_t samples = 30;
-    match_options.step = std::clamp(frame_count(query) / samples, 1, options.match.step);
-    QueryDistances distances(query, parts_.positions);
+    match_options.step = std::clamp(frame_count(query.runs) / samples, 1, options.match.step);
     std::vector<IndexedMatch> matches;
-    for (const SignaturePlace& place : likely_places(parts_, clip_of_run_, query, options)) {
+    for (const SignaturePlace& place : likely_places(parts_, clip_of_run_, query.runs, options)) {
         const int64_t first = place.frames.first / match_options.step * match_options.step;
-        const Signature text = part_of(parts_.clips[place.clip], {first, place.frames.end});
-        for (SignatureMatch match :
-             match_signature(query, text, distances.to(text), match_options)) {
+        const auto clip = parts_.clips[place.clip];
+        const Signature text = part_of(clip, {first, place.frames.end});
+        const int64_t first_run =
+            parts_.clips.first[static_cast<size_t>(place.clip)] + run_at(clip, first);
+        const MatrixF distances = distances_between(
+            query.positions,
+            parts_.positions.middleRows(first_run, static_cast<Eigen::Index>(text.size())));
+        for (SignatureMatch match : match_signature(query.runs, text, distances, match_options)) {
             match.frames = {first + match.frames.first, first + match.frames.end};
             matches.push_back({place.clip, match});
         }

@@ -11,6 +11,7 @@
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/base/resources.h"
+#include "kinetome/models/placed_signature.h"
 #include "kinetome/models/signature_index.h"
 
 namespace kinetome {
@@ -122,13 +123,15 @@ uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& optio
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
         const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         const int64_t runs = shape.size.rows / typical_run_frames + 1;
+        const int64_t axes = signature_axis_count(shape.size.columns);
         // Those within reach are some twelfth of the leaves of few takes.
         const int64_t near = leaves * std::min<int64_t>(leaves / 12, index_options.near_leaves);
         bytes += Group()
                      .rows(1, {number, number})
                      .rows(shape.clips, {number, name, number, number, number, number})
-                     .rows(runs, {index, index, index, index})
-                     .rows(leaves, {shape.size.columns * value, number, number})
+                     .rows(shape.size.columns, {axes * value})
+                     .rows(runs, {index, index, index, axes * value, index})
+                     .rows(leaves, {number, number})
                      .rows(near, {index, value})
                      .bytes();
     }

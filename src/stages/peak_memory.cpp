@@ -6,6 +6,7 @@
 #include "clip_pipeline.h"
 #include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/neighbor_graph.h"
+#include "kinetome/models/placed_signature.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/signature_index.h"
 #include "kinetome/stages/graph_rows.h"
@@ -134,10 +135,12 @@ uint64_t signature_bytes(const CorpusShape& corpus, const ReindexOptions& option
         const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         model = std::max(model, 2 * static_cast<uint64_t>(leaves) *
                                     leaf_bytes(shape.size, options.pose_hierarchy));
-        indices +=
-            static_cast<uint64_t>(shape.size.rows / typical_run_frames * bytes_per_run +
-                                  leaves * (index_options.near_leaves * bytes_per_near_leaf +
-                                            2 * shape.size.columns * int64_t{sizeof(float)}));
+        // Twice: those of each clip are brought together.
+        const int64_t position_bytes =
+            2 * signature_axis_count(shape.size.columns) * int64_t{sizeof(float)};
+        indices += static_cast<uint64_t>(
+            shape.size.rows / typical_run_frames * (bytes_per_run + position_bytes) +
+            leaves * (index_options.near_leaves * bytes_per_near_leaf + position_bytes));
     }
     return model + indices + pipeline_bytes("signatures", corpus, options, resources);
 }

@@ -108,7 +108,7 @@ SignatureIndex::Parts read_parts(const ArtifactReader& file, const std::string& 
     for (size_t i = 0; i < leaves.size(); ++i) {
         parts.clips.values.push_back({leaves[i], firsts[i], frames[i]});
     }
-    parts.positions = file.read_matrix(at("leaves/position"));
+    parts.positions = file.read_matrix(at("runs/position"));
     parts.occurrences.first = first_of_each(file.read<int64_t>(at("leaves/occurrences")));
     parts.occurrences.values = file.read<int32_t>(at("occurrences/run"));
     parts.near_leaves.first = first_of_each(file.read<int64_t>(at("leaves/near_leaves")));
@@ -137,6 +137,8 @@ void write_signatures(ArtifactWriter& file, const std::string& group,
     const GroupWriter out(file, group);
     out.write<double>("pose_rate", "frames/s", "rate that frames count at", "",
                       {signatures.pose_rate});
+    out.write_rows("axes", "mm/cm", "what poses are multiplied by for positions", "",
+                   signatures.axes);
     write_clips(out, signatures);
     out.write<int32_t>("runs/leaf", "1", "leaf of the pose hierarchy, clip after clip", "S2 §5.3",
                        column(runs, &SignatureRun::leaf));
@@ -144,8 +146,9 @@ void write_signatures(ArtifactWriter& file, const std::string& group,
                        "S2 §5.3", column(runs, &SignatureRun::first_frame));
     out.write<int32_t>("runs/frames", "frames", "frames of the run", "S2 §5.3",
                        column(runs, &SignatureRun::frames));
-    out.write_rows("leaves/position", "mm",
-                   "Euclidean distances are those between leaves, per marker", "", parts.positions);
+    out.write_rows("runs/position", "mm",
+                   "Euclidean distances are those between mean poses, per marker", "",
+                   parts.positions);
     out.write<int64_t>("leaves/occurrences", "1", "runs of the leaf", "S2 §5.3",
                        lengths_of(parts.occurrences));
     out.write<int32_t>("occurrences/run", "1", "rows of runs, leaf after leaf", "S2 §5.3",
@@ -167,7 +170,7 @@ ClassSignatures read_signatures(const ArtifactReader& file, const std::string& g
     }
     try {
         return {file.read<double>(group + rate_path).at(0), read_clips(file, group),
-                SignatureIndex(read_parts(file, group))};
+                file.read_matrix(group + "/axes"), SignatureIndex(read_parts(file, group))};
     } catch (const std::invalid_argument& error) {
         throw StoreError(
             fmt::format("{}: {}", path_for_message(file.path().string()), error.what()));

@@ -23,7 +23,13 @@ constexpr int64_t reranked = 60;    // matches that are looked at again
 constexpr double rerank_rate = 30;  // frames a second
 constexpr double pace_rate = 15;    // likewise, at which leaves are compared by MatchRule::pace
 
-/// Markers of clips, scaled so that distances are mm per marker.
+MatrixF in_mm_per_marker(const MatrixF& markers) {
+    constexpr double mm_per_cm = 10;
+    const auto compared = static_cast<double>(compared_markers(markers.cols()));
+    return markers * static_cast<float>(mm_per_cm / std::sqrt(compared));
+}
+
+/// Markers of clips.
 class MarkerShards {
   public:
     explicit MarkerShards(const Generation& generation) {
@@ -36,16 +42,11 @@ class MarkerShards {
         for (const FeatureShardReader& shard : shards_) {
             const auto place = std::ranges::find(shard.clips(), clip, &FeatureShardClip::name);
             if (place == shard.clips().end()) continue;
-            return scaled(shard.markers(place->clip_class, place->first_pose_row + frames.first,
-                                        frames.size()));
+            return shard.markers(place->clip_class, place->first_pose_row + frames.first,
+                                 frames.size());
         }
         throw StoreError(
             fmt::format("the markers of clip {} are not in the store", quote_for_message(clip)));
-    }
-    static MatrixF scaled(MatrixF markers) {
-        constexpr double mm_per_cm = 10;
-        const auto compared = static_cast<double>(compared_markers(markers.cols()));
-        return markers * static_cast<float>(mm_per_cm / std::sqrt(compared));
     }
 
   private:
@@ -75,8 +76,8 @@ RowRange asked_frames(const SignatureQuery& query, int64_t frames) {
 /// A motion to look for, and where.
 struct Asked {
     ClassSignatures signatures;
-    Signature signature;
-    MatrixF markers;  ///< scaled as MarkerShards has it; none unless they are needed
+    PlacedSignature signature;
+    MatrixF markers;  ///< cm
 };
 
 Asked asked_clip(const Generation& generation, const SignatureQuery& query) {
@@ -89,9 +90,9 @@ Asked asked_clip(const Generation& generation, const SignatureQuery& query) {
         const auto number = static_cast<int32_t>(clip - signatures.clips.begin());
         const RowRange frames = at_pose_rate(asked_frames(query, clip->source_frames),
                                              clip->source_rate, signatures.pose_rate, clip->frames);
-        Signature signature = part_of(signatures.index.signature(number), frames);
-        MatrixF markers;
-        if (query.rerank) markers = MarkerShards(generation).read(query.clip, frames);
+        MatrixF markers = MarkerShards(generation).read(query.clip, frames);
+        PlacedSignature signature = place_signature(
+            part_of(signatures.index.signature(number), frames), markers, signatures.axes);
         return {std::move(signatures), std::move(signature), std::move(markers)};
     }
     throw UsageError(
@@ -114,10 +115,11 @@ Asked asked_take(const Generation& generation, const SignatureQuery& query) {
     const Clip clip = resample(take, signatures.pose_rate);
     const RowRange frames = at_pose_rate(asked_frames(query, take.frames()), take.rate,
                                          signatures.pose_rate, clip.frames());
-    const MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, joint_positions(clip))
-                                .middleRows(frames.first, frames.size());
-    Signature signature = make_signature(leaves_of(hierarchy, markers));
-    return {std::move(signatures), std::move(signature), MarkerShards::scaled(markers)};
+    MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, joint_positions(clip))
+                          .middleRows(frames.first, frames.size());
+    PlacedSignature signature =
+        place_signature(make_signature(leaves_of(hierarchy, markers)), markers, signatures.axes);
+    return {std::move(signatures), std::move(signature), std::move(markers)};
 }
 
 std::vector<IndexedMatch> nearest_by_signature(const Asked& asked, const SignatureQuery& query,
@@ -137,10 +139,12 @@ std::vector<IndexedMatch> reranked_matches(const Generation& generation, const A
     options.stride = std::max<int64_t>(1, std::llround(asked.signatures.pose_rate / rerank_rate));
     options.overlap = query.search.match.overlap;
     return rerank_matches(
-        asked.markers, nearest_by_signature(asked, query, std::max(reranked, query.answers)),
-        frames, query.answers,
+        in_mm_per_marker(asked.markers),
+        nearest_by_signature(asked, query, std::max(reranked, query.answers)), frames,
+        query.answers,
         [&](int32_t clip, const RowRange& some) {
-            return shards.read(asked.signatures.clips[static_cast<size_t>(clip)].name, some);
+            return in_mm_per_marker(
+                shards.read(asked.signatures.clips[static_cast<size_t>(clip)].name, some));
         },
         options, threads);
 }

@@ -16,34 +16,36 @@ namespace {
 /// Signatures of a rank's clips, by number.
 struct SignatureShare {
     std::vector<int32_t> clips;
-    std::vector<Signature> signatures;
+    std::vector<PlacedSignature> signatures;
 };
 
 void pack(Packer& out, const SignatureShare& share) {
     out.put(std::span<const int32_t>(share.clips));
-    for (const Signature& signature : share.signatures) {
-        out.put(static_cast<uint64_t>(signature.size()));
-        for (const SignatureRun& run : signature) {
+    for (const PlacedSignature& signature : share.signatures) {
+        out.put(static_cast<uint64_t>(signature.runs.size()));
+        for (const SignatureRun& run : signature.runs) {
             out.put(run.leaf).put(run.first_frame).put(run.frames);
         }
+        pack(out, signature.positions);
     }
 }
 
 void unpack(Unpacker& in, SignatureShare& share) {
     share.clips = in.get_all<int32_t>();
     share.signatures.resize(share.clips.size());
-    for (Signature& signature : share.signatures) {
-        signature.resize(in.get<uint64_t>());
-        for (SignatureRun& run : signature) {
+    for (PlacedSignature& signature : share.signatures) {
+        signature.runs.resize(in.get<uint64_t>());
+        for (SignatureRun& run : signature.runs) {
             for (int32_t* value : {&run.leaf, &run.first_frame, &run.frames}) {
                 *value = in.get<int32_t>();
             }
         }
+        unpack(in, signature.positions);
     }
 }
 
 SignatureShare share_of_rank(const StageContext& context, const PosePartition& partition,
-                             const PoseHierarchy& hierarchy) {
+                             const PoseHierarchy& hierarchy, const MatrixF& axes) {
     std::vector<int64_t> frames;
     for (const PartitionClip& clip : partition.clips) frames.push_back(clip.place.pose_rows);
     const Workers workers = context.workers();
@@ -67,17 +69,19 @@ SignatureShare share_of_rank(const StageContext& context, const PosePartition& p
             const PartitionClip& clip = partition.clips[static_cast<size_t>(share.clips[i])];
             const RowRange rows{clip.first_row, clip.first_row + clip.place.pose_rows};
             if (rows.size() == 0) return;
+            const MatrixF markers = partition.read_markers(rows);
             share.signatures[i] =
-                make_signature(leaves_of(hierarchy, partition.read_markers(rows)));
+                place_signature(make_signature(leaves_of(hierarchy, markers)), markers, axes);
         },
         [](size_t) {});
     return share;
 }
 
 /// Of all clips at rank 0, of none elsewhere.
-std::vector<Signature> signatures_of(const StageContext& context, const PosePartition& partition,
-                                     const PoseHierarchy& hierarchy) {
-    std::vector<SignatureShare> shares{share_of_rank(context, partition, hierarchy)};
+std::vector<PlacedSignature> signatures_of(const StageContext& context,
+                                           const PosePartition& partition,
+                                           const PoseHierarchy& hierarchy, const MatrixF& axes) {
+    std::vector<SignatureShare> shares{share_of_rank(context, partition, hierarchy, axes)};
     const Workers workers = context.workers();
     if (workers.rank_count() > 1) {
         const auto brought = workers.ranks->gather(packed(shares.front()));
@@ -86,7 +90,7 @@ std::vector<Signature> signatures_of(const StageContext& context, const PosePart
             shares.push_back(unpacked<SignatureShare>(brought[static_cast<size_t>(rank)]));
         }
     }
-    std::vector<Signature> signatures(partition.clips.size());
+    std::vector<PlacedSignature> signatures(partition.clips.size());
     for (SignatureShare& share : shares) {
         for (size_t i = 0; i < share.clips.size(); ++i) {
             signatures[static_cast<size_t>(share.clips[i])] = std::move(share.signatures[i]);
@@ -109,7 +113,7 @@ void tell(const StageContext& context, const PosePartition& partition,
     const auto runs = static_cast<int64_t>(index.parts().clips.values.size());
     context.log.info(
         "signatures {}: {} runs of {} leaves, {:.1f} frames a run", partition.path, runs,
-        index.parts().positions.rows(),
+        index.parts().near_leaves.size(),
         static_cast<double>(partition.rows()) / static_cast<double>(std::max<int64_t>(1, runs)));
 }
 
@@ -121,15 +125,17 @@ StageResult make_signatures(const StageContext& context, const StageTask& task) 
     for (PosePartition& partition : class_partitions(context, task.inputs_of("features"))) {
         if (partition.rows() == 0) continue;
         const PoseHierarchy hierarchy = read_pose_hierarchy(models, partition.path).hierarchy;
-        const auto signatures = signatures_of(context, partition, hierarchy);
+        MatrixF axes = signature_axes(hierarchy);
+        const auto signatures = signatures_of(context, partition, hierarchy, axes);
         if (!context.is_root()) continue;
-        SignatureIndex index(signatures, leaf_positions(hierarchy.means), {},
+        SignatureIndex index(signatures, positions_of(hierarchy.means, axes), {},
                              context.resources.threads);
         tell(context, partition, index);
         const double pose_rate = partition.feature_class().pose_rate;
         auto clips = clips_of(partition);
-        indexed.emplace_back(std::move(partition),
-                             ClassSignatures{pose_rate, std::move(clips), std::move(index)});
+        indexed.emplace_back(
+            std::move(partition),
+            ClassSignatures{pose_rate, std::move(clips), std::move(axes), std::move(index)});
     }
     StageResult result;
     if (!context.is_root()) return result;

@@ -16,9 +16,24 @@ constexpr int32_t leaf_count = 60;
 /// Of means spread over half a metre.
 MatrixF random_positions() {
     RandomStream random(4, "leaves");
-    MatrixD means(leaf_count, 12);
-    for (Eigen::Index i = 0; i < means.size(); ++i) means.data()[i] = 50 * random.uniform();
-    return leaf_positions(means);
+    MatrixF positions(leaf_count, 12);
+    for (Eigen::Index i = 0; i < positions.size(); ++i) {
+        positions.data()[i] = float(250 * random.uniform());
+    }
+    return positions;
+}
+
+/// Runs that lie where their leaves do.
+PlacedSignature at_leaves(const Signature& signature, const MatrixF& positions) {
+    std::vector<int32_t> leaves;
+    for (const SignatureRun& run : signature) leaves.push_back(run.leaf);
+    return {signature, positions(leaves, Eigen::all)};
+}
+std::vector<PlacedSignature> at_leaves(const std::vector<Signature>& clips,
+                                       const MatrixF& positions) {
+    std::vector<PlacedSignature> placed;
+    for (const Signature& clip : clips) placed.push_back(at_leaves(clip, positions));
+    return placed;
 }
 
 /// Clips that walk at random among the leaves nearest to each other.
@@ -44,7 +59,12 @@ std::vector<Signature> random_clips(int64_t count, const MatrixF& positions) {
 struct Example {
     MatrixF positions = random_positions();
     std::vector<Signature> clips = random_clips(40, positions);
-    SignatureIndex index{clips, positions, {}, 1};
+    SignatureIndex index{at_leaves(clips, positions), positions, {}, 1};
+
+    std::vector<IndexedMatch> search(const Signature& query, int64_t k,
+                                     const SignatureSearchOptions& options) const {
+        return index.search(at_leaves(query, positions), k, options);
+    }
 };
 
 /// Every `1 / factor`-th frame of some of a clip.
@@ -79,11 +99,32 @@ SignatureMatch nearest_by_scan(const Example& example, const Signature& query,
 
 }  // namespace
 
-TEST_CASE("positions are as far apart as mean poses are, mm per marker") {
-    MatrixD means = MatrixD::Zero(2, 9);
-    means.row(1) << 0, 0, 0, 3, 0, 4, 0, 5, 0;  // both compared markers are 5 cm away
-    const MatrixF positions = leaf_positions(means);
-    CHECK((positions.row(0) - positions.row(1)).norm() == Approx(50));
+TEST_CASE("a query is answered by what lies nearest to it, though in the same leaf") {
+    const Signature runs{{0, 0, 40}};
+    std::vector<PlacedSignature> clips;
+    for (const float at : {0.0F, 10.0F, -10.0F}) {
+        clips.push_back({runs, MatrixF::Constant(1, 1, at)});
+    }
+    const SignatureIndex index(clips, MatrixF::Zero(1, 1), {}, 1);
+    const auto found = index.search({runs, MatrixF::Constant(1, 1, -6)}, 3, {});
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].clip == 2);
+    CHECK(found[0].match.distance == Approx(4));
+    CHECK(found[1].clip == 0);
+    CHECK(found[2].match.distance == Approx(16));
+}
+
+TEST_CASE("positions that do not fit their runs are refused") {
+    const Signature runs{{0, 0, 40}};
+    const MatrixF leaf = MatrixF::Zero(1, 3);
+    CHECK_THROWS_AS(SignatureIndex({{runs, MatrixF::Zero(2, 3)}}, leaf, {}, 1),
+                    std::invalid_argument);
+    const SignatureIndex index({{runs, leaf}}, leaf, {}, 1);
+    CHECK_THROWS_AS(index.search({runs, MatrixF::Zero(1, 2)}, 1, {}), std::invalid_argument);
+    CHECK_THROWS_AS(index.search({runs, MatrixF::Zero(2, 3)}, 1, {}), std::invalid_argument);
+    auto parts = index.parts();
+    parts.positions = MatrixF::Zero(2, 3);
+    CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
 }
 
 TEST_CASE("the index finds what a scan of all signatures finds nearest") {
@@ -92,7 +133,7 @@ TEST_CASE("the index finds what a scan of all signatures finds nearest") {
     options.match.step = 4;
     for (int64_t clip = 0; clip < 40; clip += 3) {
         const Signature query = at_tempo(example.clips[size_t(clip)], {40, 280}, 1.2);
-        const auto found = example.index.search(query, 5, options);
+        const auto found = example.search(query, 5, options);
         REQUIRE(found.size() == 5);
         const auto expected = nearest_by_scan(example, query, options.match);
         CHECK(found.front().match.distance == Approx(expected.distance).margin(1e-3));
@@ -108,10 +149,9 @@ TEST_CASE("a part of a clip at any tempo finds the clip first") {
                 SignatureSearchOptions options;
                 options.match.rule = rule;
                 const Signature& whole = example.clips[size_t(clip)];
-                const auto some =
-                    example.index.search(at_tempo(whole, {20, 240}, factor), 1, options);
+                const auto some = example.search(at_tempo(whole, {20, 240}, factor), 1, options);
                 const RowRange all{0, frame_count(whole)};
-                const auto full = example.index.search(at_tempo(whole, all, factor), 1, options);
+                const auto full = example.search(at_tempo(whole, all, factor), 1, options);
                 REQUIRE(some.size() == 1);
                 REQUIRE(full.size() == 1);
                 CHECK(some.front().clip == clip);
@@ -125,7 +165,7 @@ TEST_CASE("answers come nearest first and at different places") {
     const Example example;
     const Signature query = part_of(example.clips[3], {100, 220});
     const SignatureSearchOptions options;
-    const auto found = example.index.search(query, 20, options);
+    const auto found = example.search(query, 20, options);
     REQUIRE(found.size() == 20);
     for (size_t i = 0; i < found.size(); ++i) {
         const RowRange& frames = found[i].match.frames;
@@ -137,7 +177,7 @@ TEST_CASE("answers come nearest first and at different places") {
                          is_same_place(found[j].match.frames, frames, options.match.overlap)));
         }
     }
-    CHECK(std::ranges::equal(example.index.search(query, 7, options), std::span(found).first(7)));
+    CHECK(std::ranges::equal(example.search(query, 7, options), std::span(found).first(7)));
 }
 
 TEST_CASE("exact matches are all of those there are") {
@@ -152,7 +192,7 @@ TEST_CASE("exact matches are all of those there are") {
         size_t expected = 0;
         for (const Signature& clip : example.clips) expected += exact_matches(query, clip).size();
         options.match.overlap = 1;
-        const auto found = example.index.search(query, 1000000, options);
+        const auto found = example.search(query, 1000000, options);
         CHECK(found.size() == expected);
         CHECK(std::ranges::all_of(found, [](const auto& one) { return one.match.distance == 0; }));
     }
@@ -160,13 +200,15 @@ TEST_CASE("exact matches are all of those there are") {
 
 TEST_CASE("an index is the same for any number of threads, and out of its parts") {
     const Example example;
-    const SignatureIndex threaded(example.clips, example.positions, {}, 3);
+    const SignatureIndex threaded(at_leaves(example.clips, example.positions), example.positions,
+                                  {}, 3);
     const auto& expected = example.index.parts();
     CHECK(threaded.parts().near_leaves.values == expected.near_leaves.values);
     CHECK(threaded.parts().occurrences.values == expected.occurrences.values);
     const SignatureIndex again(expected);
     const Signature query = part_of(example.clips[9], {10, 190});
-    CHECK(again.search(query, 10, {}) == example.index.search(query, 10, {}));
+    CHECK(again.search(at_leaves(query, example.positions), 10, {}) ==
+          example.search(query, 10, {}));
 }
 
 TEST_CASE("parts that do not fit make no index") {
@@ -180,14 +222,18 @@ TEST_CASE("parts that do not fit make no index") {
     parts = example.index.parts();
     parts.near_leaves.first.pop_back();
     CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
-    CHECK_THROWS_AS(SignatureIndex({Signature{{leaf_count, 0, 4}}}, example.positions, {}, 1),
-                    std::invalid_argument);
+    const PlacedSignature unknown{{{leaf_count, 0, 4}}, example.positions.topRows(1)};
+    CHECK_THROWS_AS(SignatureIndex({unknown}, example.positions, {}, 1), std::invalid_argument);
 }
 
 TEST_CASE("an empty index and an empty query have no answers") {
-    const SignatureIndex empty({}, random_positions(), {}, 1);
-    CHECK(empty.search(Signature{{3, 0, 40}}, 10, {}).empty());
+    const MatrixF positions = random_positions();
+    const PlacedSignature query = at_leaves(Signature{{3, 0, 40}}, positions);
+    CHECK(SignatureIndex(std::vector<PlacedSignature>(), positions, {}, 1)
+              .search(query, 10, {})
+              .empty());
     CHECK(Example().index.search({}, 10, {}).empty());
-    const SignatureIndex short_clips({Signature{{3, 0, 1}}, {}}, random_positions(), {}, 1);
-    CHECK(short_clips.search(Signature{{3, 0, 1}}, 10, {}).size() == 1);
+    const PlacedSignature frame = at_leaves(Signature{{3, 0, 1}}, positions);
+    const SignatureIndex short_clips({frame, {}}, positions, {}, 1);
+    CHECK(short_clips.search(frame, 10, {}).size() == 1);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kinetome/base/matrix.h"
-#include "kinetome/models/signature.h"
+#include "kinetome/models/placed_signature.h"
 #include "kinetome/models/signature_match.h"
 
 namespace kinetome {
@@ -57,10 +57,6 @@ struct IndexedMatch {
 std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int64_t k,
                                           double overlap);
 
-/// Where leaves lie: rows whose Euclidean distances are those between the mean poses of leaves (C ×
-/// f, cm, the origin among the f / 3 markers), mm per marker.
-MatrixF leaf_positions(const MatrixDView& means);
-
 /// A search looks up, in an inverted index of the leaves, where the leaves of the query and those
 /// near them occur; each occurrence speaks for the places where the query would answer it. At the
 /// places that most of the query speaks for, it is matched (match_signature). What is looked up is
@@ -70,15 +66,15 @@ class SignatureIndex {
   public:
     struct Parts {
         ValueLists<SignatureRun> clips;    ///< runs of each
-        MatrixF positions;                 ///< of leaves
+        MatrixF positions;                 ///< runs × r, clip after clip
         ValueLists<int32_t> occurrences;   ///< runs of each leaf, counted over all clips
         ValueLists<NearLeaf> near_leaves;  ///< of each leaf, nearest first
         double reach = 0;                  ///< mm per marker, of near leaves
     };
 
-    /// `positions` as leaf_positions makes them. The same for any number of threads. Throws
-    /// std::invalid_argument for a leaf without a position.
-    SignatureIndex(const std::vector<Signature>& clips, MatrixF positions,
+    /// Positions of all are along the same axes (signature_axes). The same for any number of
+    /// threads. Throws std::invalid_argument for a leaf without a position.
+    SignatureIndex(const std::vector<PlacedSignature>& clips, const MatrixF& leaf_positions,
                    const SignatureIndexOptions& options, int threads);
     /// Out of the parts() of another one. Throws std::invalid_argument when they do not fit.
     explicit SignatureIndex(Parts parts);
@@ -87,12 +83,14 @@ class SignatureIndex {
     std::span<const SignatureRun> signature(int32_t clip) const { return parts_.clips[clip]; }
 
     /// The k nearest matches, nearest first, then by clip and frame; no two at one place. A
-    /// tolerance of 0 asks for exact matches (exact_matches), of which none is missed.
-    std::vector<IndexedMatch> search(std::span<const SignatureRun> query, int64_t k,
+    /// tolerance of 0 asks for exact matches (exact_matches), of which none is missed. Throws
+    /// std::invalid_argument when the query's positions are of another shape than its runs and
+    /// those of the index.
+    std::vector<IndexedMatch> search(const PlacedSignature& query, int64_t k,
                                      const SignatureSearchOptions& options) const;
 
   private:
-    std::vector<IndexedMatch> near_matches(std::span<const SignatureRun> query,
+    std::vector<IndexedMatch> near_matches(const PlacedSignature& query,
                                            const SignatureSearchOptions& options) const;
     std::vector<IndexedMatch> exact_matches(std::span<const SignatureRun> query) const;
 

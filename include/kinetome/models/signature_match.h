@@ -18,7 +18,7 @@ enum class MatchRule : uint8_t {
     edit,     ///< run by run: runs are replaced, inserted and left out (S2: approximate strings)
 };
 
-/// Distances are those between leaves, mm per marker.
+/// Distances are those between runs, mm per marker.
 struct SignatureMatchOptions {
     MatchRule rule = MatchRule::pace;
     double tolerance = std::numeric_limits<double>::infinity();  ///< mean distance of a match
@@ -26,7 +26,7 @@ struct SignatureMatchOptions {
     double longest = 2;     ///< and no longer than so many times it
     double overlap = 0.3;   ///< of two matches that share more of the shorter one, the nearer is it
     int32_t step = 8;       ///< pace: frames from one that is compared to the next
-    double farthest = 100;  ///< repeats, edit: leaves farther apart are no more different than that
+    double farthest = 100;  ///< repeats, edit: runs farther apart are no more different than that
     double gap = 5;  ///< edit: what inserting or leaving out costs beyond the distance to the
                      ///< nearer of the runs it happens between
 };
@@ -44,7 +44,7 @@ bool operator<(const SignatureMatch& a, const SignatureMatch& b);
 bool is_same_place(const RowRange& a, const RowRange& b, double overlap);
 
 /// Matches of a query of n runs in a text of m, nearest first; `distances` (n × m) are those
-/// between their leaves. The semi-global dynamic programme (Sellers): the whole query, beginning
+/// between their runs. The semi-global dynamic programme (Sellers): the whole query, beginning
 /// and ending anywhere in the text. Of all alignments that end at one place the nearest counts;
 /// where two are equally near, the one that takes a step of both. A match holds no more of the runs
 /// at its ends than the query has of its own (repeats, edit), or is a whole number of steps (pace).

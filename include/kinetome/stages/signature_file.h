@@ -23,6 +23,7 @@ struct SignatureClip {
 struct ClassSignatures {
     double pose_rate = 0;              ///< frames a second
     std::vector<SignatureClip> clips;  ///< in name order, as the index numbers them
+    MatrixF axes;                      ///< of the positions in the index (signature_axes)
     SignatureIndex index;
 
     /// Where a boundary between frames lies in the source: at the first frame at it or after it.
