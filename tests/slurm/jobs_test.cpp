@@ -47,6 +47,22 @@ std::vector<pid_t> processes_on(const fs::path& store, const std::string& comman
     return found;
 }
 
+/// A corpus whose clustering can be found at work, and the store that jobs make of it.
+struct SlowCorpus {
+    TemporaryFolder folder;
+    fs::path takes = folder / "takes";
+    StoreOnDisk store{folder / "store"};
+
+    SlowCorpus() { generate_corpus(takes, 16000, 2); }
+    JobChain submit(std::vector<std::string> submit_options = {}) const {
+        return {takes, store.path(), slow_clustering(std::move(submit_options))};
+    }
+    void wait_for_checkpoint() const {
+        wait_until([&] { return store.has_checkpoint(); });
+    }
+    std::string serial_digests() const { return ::serial_digests(takes, slow_clustering()); }
+};
+
 }  // namespace
 
 TEST_CASE("three jobs publish what one process makes, whatever the folders are called", "[slurm]") {
@@ -106,37 +122,31 @@ TEST_CASE("a killed task is reported, its dependents are cancelled, and submitti
 
 TEST_CASE("a killed rank ends its job at once, and submitting again goes on", "[slurm]") {
     if (!SlurmCluster::find()) return;
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 16000, 2);
-    const StoreOnDisk store(folder / "store");
+    const SlowCorpus corpus;
     {
-        const JobChain chain(corpus, store.path(), slow_clustering());
-        wait_until([&] { return store.has_checkpoint(); });
-        const std::vector<pid_t> ranks = processes_on(store.path(), "reindex");
+        const JobChain chain = corpus.submit();
+        corpus.wait_for_checkpoint();
+        const std::vector<pid_t> ranks = processes_on(corpus.store.path(), "reindex");
         REQUIRE(std::to_string(ranks.size()) == rank_count);
         ::kill(ranks.back(), SIGKILL);
         const CommandResult ended = chain.wait();
         INFO(ended.output);
         CHECK(ended.exit_code == killed);
-        CHECK(contains(ended.output, "(reindex) failed: see " + store.name()));
+        CHECK(contains(ended.output, "(reindex) failed: see " + corpus.store.name()));
         CHECK(JobChain::state(chain.publish) == "CANCELLED");
     }
-    const JobChain again(corpus, store.path(), slow_clustering());
+    const JobChain again = corpus.submit();
     again.require_published();
     CHECK(contains(again.log("reindex-" + again.reindex), "goes on after iteration"));
-    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+    CHECK(corpus.store.digests() == corpus.serial_digests());
 }
 
 TEST_CASE("a job whose node crashes begins anew, where it was interrupted", "[slurm]") {
     const auto cluster = SlurmCluster::find();
     if (!cluster) return;
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 16000, 2);
-    const StoreOnDisk store(folder / "store");
-    const JobChain chain(corpus, store.path(), slow_clustering());
-    wait_until([&] { return store.has_checkpoint(); });
+    const SlowCorpus corpus;
+    const JobChain chain = corpus.submit();
+    corpus.wait_for_checkpoint();
     const std::string node = SlurmCluster::first_node(JobChain::nodes(chain.reindex));
     cluster->crash(node);
     wait_until([&] { return JobChain::state(chain.reindex) != "COMPLETING"; });
@@ -145,55 +155,46 @@ TEST_CASE("a job whose node crashes begins anew, where it was interrupted", "[sl
     const std::string log = chain.log("reindex-" + chain.reindex);
     CHECK(contains(log, "start 2"));
     CHECK(contains(log, "goes on after iteration"));
-    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+    CHECK(corpus.store.digests() == corpus.serial_digests());
 }
 
 TEST_CASE("warned of its time limit, a job keeps its work and is requeued", "[slurm]") {
     if (!SlurmCluster::find()) return;
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 16000, 2);
-    const StoreOnDisk store(folder / "store");
-    const JobChain chain(corpus, store.path(), slow_clustering());
-    wait_until([&] { return store.has_checkpoint(); });
+    const SlowCorpus corpus;
+    const JobChain chain = corpus.submit();
+    corpus.wait_for_checkpoint();
     // As Slurm does before the limit (--signal): the steps, not the script.
     ask({"scancel", "--signal=TERM", chain.reindex});
     chain.require_published();
     const std::string log = chain.log("reindex-" + chain.reindex);
     CHECK(contains(log, "interrupted; requeue 1 of at most 5"));
     CHECK(contains(log, "goes on after iteration"));
-    CHECK(store.digests() == serial_digests(corpus, slow_clustering()));
+    CHECK(corpus.store.digests() == corpus.serial_digests());
 }
 
 TEST_CASE("a job that is cancelled stays cancelled, and submitting again goes on", "[slurm]") {
     if (!SlurmCluster::find()) return;
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 16000, 2);
-    const StoreOnDisk store(folder / "store");
+    const SlowCorpus corpus;
     {
-        const JobChain chain(corpus, store.path(), slow_clustering());
-        wait_until([&] { return store.has_checkpoint(); });
+        const JobChain chain = corpus.submit();
+        corpus.wait_for_checkpoint();
         ask({"scancel", chain.reindex});
         const CommandResult ended = chain.wait();
         CHECK(ended.exit_code == interrupted);
         CHECK(JobChain::state(chain.reindex) == "CANCELLED");
         CHECK_FALSE(contains(chain.log("reindex-" + chain.reindex), "requeue"));
     }
-    const JobChain again(corpus, store.path(), slow_clustering());
+    const JobChain again = corpus.submit();
     again.require_published();
     CHECK(contains(again.log("reindex-" + again.reindex), "goes on after iteration"));
 }
 
 TEST_CASE("a job that is interrupted more often than is allowed fails clearly", "[slurm]") {
     if (!SlurmCluster::find()) return;
-    const TemporaryFolder folder;
-    const fs::path corpus = folder / "takes";
-    generate_corpus(corpus, 16000, 2);
-    const StoreOnDisk store(folder / "store");
-    const JobChain chain(corpus, store.path(), slow_clustering({"--max-requeues", "1"}));
+    const SlowCorpus corpus;
+    const JobChain chain = corpus.submit({"--max-requeues", "1"});
     const std::string name = "reindex-" + chain.reindex;
-    wait_until([&] { return store.has_checkpoint(); });
+    corpus.wait_for_checkpoint();
     for (const char* start : {"start 1", "start 2"}) {
         wait_until([&] {
             const std::string log = chain.log(name);
