@@ -1,5 +1,5 @@
 // What most sources include, parsed once a build (KINETOME_PRECOMPILE). Every source still names what it uses: the
-// debug preset builds without this file, the optimised ones take it for tests alone.
+// debug preset builds without this file, and the release preset takes it for tests alone.
 #pragma once
 
 #include <algorithm>
