@@ -134,6 +134,15 @@ void judge_labelled_takes(const Options& options) {
         parse_spread(spread, bundles);
         judge(options, bundles, 1, starts_of_sets, classes_of_sets);
     }
+    const MotionBundleOptions standard;
+    for (const double tau_factor : {0.7, 0.85, 1.15, 1.3, 1.6}) {
+        judge(options, standard, tau_factor, starts_of_sets, classes_of_sets);
+    }
+    for (const double gamma : {0.0, 0.5, 0.65, 0.9}) {
+        bundles = standard;
+        bundles.gamma = gamma;
+        judge(options, bundles, 1, starts_of_sets, classes_of_sets);
+    }
 }
 
 /// Bundles as "height x mean frames", those with most frames first.
