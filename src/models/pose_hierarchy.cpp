@@ -125,6 +125,19 @@ double pose_error(std::span<const float> pose, const VectorD& reconstructed) {
            std::sqrt(squared / static_cast<double>(compared_markers(reconstructed.size())));
 }
 
+std::vector<double> leaf_errors(const PoseHierarchy& hierarchy, const MatrixFView& poses,
+                                std::span<const int32_t> leaves) {
+    std::vector<double> errors;
+    errors.reserve(leaves.size());
+    for (int64_t i = 0; i < poses.rows(); ++i) {
+        const auto pose = row_of(poses, i);
+        const int32_t leaf = leaves[static_cast<size_t>(i)];
+        errors.push_back(
+            pose_error(pose, pose_at(hierarchy, leaf, leaf_coordinates(hierarchy, leaf, pose))));
+    }
+    return errors;
+}
+
 void pack(Packer& out, const PoseHierarchy& hierarchy) {
     pack(out, hierarchy.principal_columns);
     out.put(static_cast<uint64_t>(hierarchy.nodes.size()));

@@ -72,21 +72,6 @@ CompressedSize compressed_size(const PoseHierarchy& hierarchy, int64_t poses, in
             c * f * d + n * d};
 }
 
-/// Of every pose on the leaf it falls in, mm per marker.
-std::vector<double> compression_errors(const PoseHierarchy& hierarchy, const MatrixF& poses,
-                                       const std::vector<int32_t>& leaves) {
-    std::vector<double> errors;
-    errors.reserve(leaves.size());
-    for (int64_t i = 0; i < poses.rows(); ++i) {
-        const std::span<const float> pose(poses.data() + i * poses.cols(),
-                                          static_cast<size_t>(poses.cols()));
-        const int32_t leaf = leaves[static_cast<size_t>(i)];
-        errors.push_back(
-            pose_error(pose, pose_at(hierarchy, leaf, leaf_coordinates(hierarchy, leaf, pose))));
-    }
-    return errors;
-}
-
 /// Runs of frames of a take in one leaf.
 int64_t runs_of(const std::vector<int32_t>& leaves, const std::vector<RowRange>& takes) {
     int64_t runs = 0;
@@ -111,7 +96,7 @@ void add_compression(Table& table, const MarkerTakes& takes,
     const auto leaves = leaves_of(hierarchy, takes.poses);
     const CompressedSize size =
         compressed_size(hierarchy, takes.poses.rows(), runs_of(leaves, takes.takes));
-    std::vector<double> errors = compression_errors(hierarchy, takes.poses, leaves);
+    std::vector<double> errors = leaf_errors(hierarchy, takes.poses, leaves);
     double squared = 0;
     for (const double error : errors) squared += error * error;
     std::ranges::sort(errors);

@@ -38,17 +38,8 @@ std::string bytes_of(const GrownHierarchy& grown) {
     return bytes;
 }
 
-std::vector<double> errors_of(const PoseHierarchy& hierarchy, const MatrixF& poses) {
-    const auto leaves = leaves_of(hierarchy, poses);
-    std::vector<double> errors;
-    for (int64_t i = 0; i < poses.rows(); ++i) {
-        const std::span<const float> pose(poses.data() + i * poses.cols(),
-                                          static_cast<size_t>(poses.cols()));
-        const int32_t leaf = leaves[static_cast<size_t>(i)];
-        errors.push_back(
-            pose_error(pose, pose_at(hierarchy, leaf, leaf_coordinates(hierarchy, leaf, pose))));
-    }
-    return errors;
+double worst_error(const PoseHierarchy& hierarchy, const MatrixF& poses) {
+    return std::ranges::max(leaf_errors(hierarchy, poses, leaves_of(hierarchy, poses)));
 }
 
 /// The method as the paper tells it, one node after the other, all in memory: the sets of rows of
@@ -196,7 +187,7 @@ TEST_CASE("the maximum rule leaves no pose beyond the tolerance, RMS some") {
     growth.options.leaf_rule = LeafRule::maximum;
     const auto by_maximum = growth(poses, some_columns);
     const auto largest = [&](const GrownHierarchy& grown) {
-        return std::ranges::max(errors_of(grown.hierarchy, poses));
+        return worst_error(grown.hierarchy, poses);
     };
     CHECK(by_rms.hierarchy.leaf_errors.maxCoeff() <= 40);
     CHECK(largest(by_rms) > 40);
@@ -240,7 +231,7 @@ TEST_CASE("degenerate poses make a model without a value that is not a number") 
             CHECK(grown.hierarchy.bases.allFinite());
             CHECK(grown.hierarchy.leaf_errors.allFinite());
             for (const MatrixD& map : grown.maps.maps) CHECK(map.allFinite());
-            CHECK(std::ranges::max(errors_of(grown.hierarchy, poses)) < 1e-3);
+            CHECK(worst_error(grown.hierarchy, poses) < 1e-3);
         }
     };
     const MatrixF poses = swinging_poses(40);

@@ -90,4 +90,9 @@ VectorD pose_at(const PoseHierarchy& hierarchy, int32_t leaf, const VectorD& coo
 /// compared markers of the squared distance.
 double pose_error(std::span<const float> pose, const VectorD& reconstructed);
 
+/// Of every pose (n × f) what the leaf that it falls in leaves of it, mm per marker; `leaves` are
+/// those of leaves_of().
+std::vector<double> leaf_errors(const PoseHierarchy& hierarchy, const MatrixFView& poses,
+                                std::span<const int32_t> leaves);
+
 }  // namespace kinetome
