@@ -64,11 +64,11 @@ Command export_command() {
             app.add_option("STORE", flags->store, "store to read")->required();
             app.add_option("WHAT", flags->what,
                            "clips, letters, bundles, bundle-graph, hierarchy, neighbors, segments, "
-                           "primitives, "
-                           "primitive-graph, signatures or timeline")
+                           "primitives, primitive-graph, signatures or timeline")
                 ->required();
-            app.add_option("--format", flags->format,
-                           "csv or json (default: csv); of graphs dot, too; of a timeline svg");
+            app.add_option(
+                "--format", flags->format,
+                "csv or json (default: csv); of graphs dot and svg, too; of a timeline svg");
             app.add_option(
                 "--labels", flags->labels,
                 "of primitives, bundles and their graphs: clip,first,end,label, such as `kinetome "

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "kinetome/report/xml_text.h"
+#include "svg_text.h"
 
 namespace kinetome {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 constexpr double width = 1000, least_left = 110, right = 26;
 constexpr double rows_top = 52, row_height = 38, row_gap = 14;
 constexpr double axis_height = 40, legend_line = 24, margin = 14;
-constexpr double letter_width = 6.6;  // a generous mean of common sans-serif faces at 12 px
 
 /// Paul Tol's "light" colours: told apart without colour vision, and black text stands on them.
 constexpr std::array colours = {"#77aadd", "#ee8866", "#eedd88", "#ffaabb",
@@ -33,26 +33,13 @@ constexpr std::string_view head = R"svg(<defs>
 </defs>
 )svg";
 
-/// Two decimals at most, none of them a trailing zero.
-std::string number(double value) {
-    std::string text = fmt::format("{:.2f}", value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text == "-0" ? "0" : text;
-}
-
-double text_width(std::string_view text) {
-    const auto starts_character = [](char byte) { return (byte & 0xc0) != 0x80; };
-    return letter_width * double(std::count_if(text.begin(), text.end(), starts_character));
-}
-
 /// What an area of a colour number is filled with; past the last colour they come again, dotted.
 std::string filled_rect(double x, double y, double w, double h, std::optional<int32_t> colour) {
     const auto rect = [&](std::string_view fill) {
         return fmt::format(
             R"svg(<rect x="{}" y="{}" width="{}" height="{}" rx="2" fill="{}" stroke="#fff"/>)svg"
             "\n",
-            number(x), number(y), number(w), number(h), fill);
+            svg_number(x), svg_number(y), svg_number(w), svg_number(h), fill);
     };
     if (!colour) return rect(grey);
     const auto shade = static_cast<size_t>(*colour);
@@ -81,7 +68,7 @@ class TimelinePicture {
     static double room_for_names(const Timeline& timeline) {
         double room = least_left;
         for (const TimelineRow& row : timeline.rows) {
-            room = std::max(room, text_width(row.name) + 2 * margin);
+            room = std::max(room, svg_text_width(row.name) + 2 * margin);
         }
         return std::min(room, width / 2);
     }
@@ -96,24 +83,23 @@ class TimelinePicture {
         std::string text =
             fmt::format(R"svg(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" )svg"
                         R"svg(width="{0}" height="{1}" role="img" aria-labelledby="title" )svg"
-                        R"svg(font-family="Helvetica, Arial, 'DejaVu Sans', sans-serif" )svg"
-                        R"svg(font-size="12" fill="#222">)svg"
-                        "\n<title id=\"title\">{2}</title>\n",
-                        number(width), number(height), xml_text(timeline_.title));
+                        R"svg({2} fill="#222">)svg"
+                        "\n<title id=\"title\">{3}</title>\n",
+                        svg_number(width), svg_number(height), svg_font, xml_text(timeline_.title));
         text += head;
         return text + fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n",
-                                  number(width), number(height));
+                                  svg_number(width), svg_number(height));
     }
 
     void write(double x, double y, std::string_view anchor, std::string_view text) {
-        body_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", number(x),
-                             number(y), anchor, xml_text(text));
+        body_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n",
+                             svg_number(x), svg_number(y), anchor, xml_text(text));
     }
 
     void draw_title() {
         body_ +=
             fmt::format("<text x=\"{}\" y=\"30\" font-size=\"16\" font-weight=\"bold\">{}</text>\n",
-                        number(left_), xml_text(timeline_.title));
+                        svg_number(left_), xml_text(timeline_.title));
     }
 
     void draw_row(const TimelineRow& row, double y) {
@@ -137,13 +123,13 @@ class TimelinePicture {
         body_ +=
             fmt::format(R"svg(<rect x="{}" y="{}" width="{}" height="{}" fill="url(#zone)"/>)svg"
                         "\n",
-                        number(x), number(y), number(w), number(h));
+                        svg_number(x), svg_number(y), svg_number(w), svg_number(h));
     }
 
     void draw_tick(double x, double y) {
         body_ += fmt::format(R"svg(<path d="M{} {}v10.5" stroke="#222" stroke-opacity=".6"/>)svg"
                              "\n",
-                             number(x), number(y));
+                             svg_number(x), svg_number(y));
     }
 
     /// Where the bar is not hatched, if it has room there.
@@ -154,7 +140,7 @@ class TimelinePicture {
             if (zone.end >= clear.end) clear.end = std::min(clear.end, zone.first);
         }
         const double x = x_of(clear.first), w = x_of(clear.end) - x;
-        if (text_width(bar.name) + 8 > w) return;
+        if (svg_text_width(bar.name) + 8 > w) return;
         write(x + w / 2, y + row_height / 2 + 2, "middle", bar.name);
     }
 
@@ -173,15 +159,15 @@ class TimelinePicture {
         const double spacing = mark_spacing();
         body_ += fmt::format(R"svg(<path d="M{} {}H{}" stroke="#222" fill="none"/>)svg"
                              "\n",
-                             number(left_), number(y), number(width - right));
+                             svg_number(left_), svg_number(y), svg_number(width - right));
         const double last = seconds(timeline_.frames);
         for (int64_t i = 0; double(i) * spacing <= last + 1e-9; ++i) {
             const double time = double(i) * spacing;
             const double x = left_ + (width - left_ - right) * time / std::max(last, 1e-9);
             body_ += fmt::format(R"svg(<path d="M{} {}v5" stroke="#222" fill="none"/>)svg"
                                  "\n",
-                                 number(x), number(y));
-            write(x, y + 18, "middle", number(time) + (i == 0 ? " s" : ""));
+                                 svg_number(x), svg_number(y));
+            write(x, y + 18, "middle", svg_number(time) + (i == 0 ? " s" : ""));
         }
     }
 
@@ -189,7 +175,7 @@ class TimelinePicture {
     double draw_legend(double y) {
         double x = left_;
         const auto entry = [&](const std::string& name, const auto& draw_swatch) {
-            const double w = 22 + text_width(name) + 18;
+            const double w = 22 + svg_text_width(name) + 18;
             if (x > left_ && x + w > width - right) {
                 x = left_;
                 y += legend_line;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 
 #include "kinetome/base/csv.h"
 #include "kinetome/base/error.h"
+#include "kinetome/report/graph_svg.h"
 #include "kinetome/store/json_text.h"
 
 namespace kinetome {
@@ -108,10 +110,15 @@ std::string box_size(const StoredGraph& graph, int32_t node) {
                        2 * frames / count / graph.rate, std::sqrt(count) / 2);
 }
 
+/// What the graph is called after.
+const std::string& kind_of(const StoredGraph& graph) {
+    const GraphStyle& style = graph.nodes.style;
+    return style.boxes_by_size ? style.group : style.piece;
+}
+
 std::string write_dot(const StoredGraph& graph) {
     const GraphStyle& style = graph.nodes.style;
-    std::string text = fmt::format("digraph {}s {{\n  node [shape=box];\n",
-                                   style.boxes_by_size ? style.group : style.piece);
+    std::string text = fmt::format("digraph {}s {{\n  node [shape=box];\n", kind_of(graph));
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
         const auto members = graph.nodes.graph.members(node);
         const std::string caption =
@@ -169,12 +176,22 @@ GraphFormat parse_graph_format(std::string_view name) {
     if (name == "csv") return GraphFormat::csv;
     if (name == "json") return GraphFormat::json;
     if (name == "dot") return GraphFormat::dot;
-    throw UsageError(fmt::format("--format {}: expected csv, json or dot", name));
+    if (name == "svg") return GraphFormat::svg;
+    throw UsageError(fmt::format("--format {}: expected csv, json, dot or svg", name));
 }
 
 std::string write_graph(const StoredGraph& graph, GraphFormat format) {
-    if (format == GraphFormat::csv) return write_csv(graph);
-    return format == GraphFormat::json ? write_json(graph) : write_dot(graph);
+    switch (format) {
+        case GraphFormat::csv:
+            return write_csv(graph);
+        case GraphFormat::json:
+            return write_json(graph);
+        case GraphFormat::dot:
+            return write_dot(graph);
+        case GraphFormat::svg:
+            return graph_svg(fmt::format("Graph of {}s", kind_of(graph)), graph.nodes, graph.rate);
+    }
+    throw std::logic_error("no such format of graphs");
 }
 
 }  // namespace kinetome

@@ -163,6 +163,9 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
         require_program({"export", store.path, "bundle-graph", "--format", "dot"}).output;
     CHECK(dot.starts_with("digraph bundles {"));
     CHECK(contains(dot, "fixedsize=true, width="));
+    const std::string picture =
+        require_program({"export", store.path, "bundle-graph", "--format", "svg"}).output;
+    CHECK(contains(picture, "<title id=\"title\">Graph of bundles</title>"));
 
     // The numbers of bundles are the same wherever they are told.
     const auto list = lines_of(require_program({"bundles", store.path, "--format", "csv"}).output);

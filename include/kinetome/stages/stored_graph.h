@@ -66,14 +66,15 @@ std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
 /// What the generation tells of its clips, whose frames are read from its shards. It outlives this.
 ClipSource clip_source(const Generation& generation);
 
-enum class GraphFormat { csv, json, dot };
+enum class GraphFormat { csv, json, dot, svg };
 /// Throws UsageError for another name.
 GraphFormat parse_graph_format(std::string_view name);
 
 /// The adjacency of its nodes, by node, and all that stands for it. CSV: a line a succession of two
 /// primitives, `from_node,to_node,from_cluster,to_cluster,from_label,to_label,clip,from_first,
 /// from_end,to_first,to_end`; JSON: nodes with their primitives and strong components, edges with
-/// their numbers of successions; DOT: the same as a picture. Frames at the sources' rates.
+/// their numbers of successions; DOT: the same for Graphviz; SVG: a picture (graph_svg). Frames at
+/// the sources' rates.
 std::string write_graph(const StoredGraph& graph, GraphFormat format);
 
 }  // namespace kinetome
