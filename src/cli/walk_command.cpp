@@ -7,6 +7,7 @@
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/write_amc.h"
 #include "kinetome/formats/write_bvh.h"
+#include "kinetome/stages/node_blend.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_walk.h"
 #include "kinetome/stages/stored_bundles.h"
@@ -21,6 +22,8 @@ struct WalkFlags {
     std::string graph = "primitives", registration = "warp", generation = "current";
     WalkOptions walk;
     std::optional<double> fade;
+    std::string blend;
+    std::vector<double> weights;
 };
 
 enum class MotionFormat { bvh, amc };
@@ -92,7 +95,22 @@ void warn_of_early_end(const PrimitiveWalk& walk, const WalkOptions& options, co
         walk.nodes.back(), options.to.empty() ? "" : " that leads back to --to");
 }
 
-ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
+void print_blend(const NodeBlend& blend) {
+    fmt::print("blend         {}\n", blend.node);
+    for (size_t i = 0; i < blend.parts.size(); ++i) {
+        const ClipPrimitive& part = blend.parts[i];
+        fmt::print("  {:.3f}       {} {}:{}\n", blend.weights[i], quote_for_message(part.clip),
+                   part.first, part.end);
+    }
+    fmt::print("motion        {} frames at {:g} a second, on the body of {}\n",
+               blend.motion.frames(), blend.motion.rate, blend.body);
+    fmt::print("pose step     {:.0f} cm/s at most (in the parts {:.0f})\n", blend.pose_step,
+               blend.pose_step_of_parts);
+    fmt::print("fastest joint {:.0f} cm/s (in the parts {:.0f})\n", blend.peaks.speed,
+               blend.peaks_of_parts.speed);
+}
+
+void check(const WalkFlags& flags) {
     if (flags.graph != "primitives" && flags.graph != "bundles") {
         throw UsageError(fmt::format("--graph {}: expected primitives or bundles", flags.graph));
     }
@@ -100,6 +118,24 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
         throw UsageError(
             fmt::format("--registration {}: expected warp or even", flags.registration));
     }
+    if (flags.blend.empty() && !flags.weights.empty()) {
+        throw UsageError("--weights are those of --blend");
+    }
+    if (!flags.blend.empty() && !(flags.walk.from.empty() && flags.walk.to.empty())) {
+        throw UsageError("--blend stays in one node: it goes neither --from nor --to others");
+    }
+}
+
+void write_motion(const Clip& motion, MotionFormat format, const fs::path& output) {
+    if (format == MotionFormat::bvh) {
+        write_file_atomically(output, write_bvh(motion));
+    } else {
+        write_amc_and_asf(motion, output);
+    }
+}
+
+ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
+    check(flags);
     const MotionFormat format = format_of(flags.output);
     const OpenStore open(flags.store, flags.generation);
     const bool bundles = flags.graph == "bundles";
@@ -107,14 +143,22 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
     if (bundles) options = options_of_bundle_walk(options);
     options.registered = flags.registration == "warp";
     if (flags.fade) options.fade_seconds = *flags.fade;
-    const PrimitiveWalk made = walk_primitives(
-        bundles ? stored_bundle_members(open, flags.labels) : stored_primitives(open, flags.labels),
-        clip_source(open.generation), options);
-    if (format == MotionFormat::bvh) {
-        write_file_atomically(flags.output, write_bvh(made.motion));
-    } else {
-        write_amc_and_asf(made.motion, flags.output);
+    const auto pieces =
+        bundles ? stored_bundle_members(open, flags.labels) : stored_primitives(open, flags.labels);
+    const ClipSource source = clip_source(open.generation);
+    if (!flags.blend.empty()) {
+        const NodeBlend made = blend_node(pieces, source,
+                                          {.node = flags.blend,
+                                           .weights = flags.weights,
+                                           .registered = options.registered,
+                                           .body = options.body,
+                                           .style = options.style});
+        write_motion(made.motion, format, flags.output);
+        print_blend(made);
+        return ExitCode::success;
     }
+    const PrimitiveWalk made = walk_primitives(pieces, source, options);
+    write_motion(made.motion, format, flags.output);
     print_walk(made);
     warn_of_early_end(made, flags.walk, invocation.log);
     return ExitCode::success;
@@ -154,8 +198,16 @@ Command walk_command() {
                    "warp: what is alike is blended, as dynamic time warping finds it; even: "
                    "equal shares of time are")
                 ->capture_default_str();
-            app.add_option("--body", options.body,
-                           "clip whose skeleton moves (default: the first of the walk)");
+            app.add_option("--blend", flags->blend,
+                           "label, cluster or bundle: instead of a walk, its motions all at once");
+            app.add_option("--weights", flags->weights,
+                           "W,W,… of these motions, in the order of `kinetome export` (default: "
+                           "all alike)")
+                ->delimiter(',');
+            app.add_option(
+                "--body", options.body,
+                "clip whose skeleton moves (default: the first of the walk, the heaviest of a "
+                "blend)");
             app.add_option("--generation", flags->generation,
                            "id, the beginning of one, or current");
             return [=](const Invocation& invocation) { return walk(*flags, invocation); };

@@ -71,4 +71,10 @@ std::vector<FootSupport> foot_support(std::span<const FootContacts> contacts, do
     return support;
 }
 
+FootSupport support_at(std::span<const FootSupport> support, double moment) {
+    if (support.empty()) return {};
+    const int64_t last = static_cast<int64_t>(support.size()) - 1;
+    return support[static_cast<size_t>(std::clamp<int64_t>(std::llround(moment), 0, last))];
+}
+
 }  // namespace kinetome

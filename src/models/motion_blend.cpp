@@ -5,6 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "registration.h"
+
 namespace kinetome {
 namespace {
 
@@ -164,26 +166,73 @@ Clip MotionBlend::clip() const {
     return clip;
 }
 
-Clip blend_motions(std::span<const BlendPart> parts) {
+namespace {
+
+double moment_of(const BlendPart& part, double share) {
+    const auto length = static_cast<double>(part.end - part.first);
+    return static_cast<double>(part.first) + length * registered_share(part.registration, share);
+}
+
+/// Parts as one: what share of what they are registered to is passed after so many frames.
+class BlendTime {
+  public:
+    explicit BlendTime(std::span<const BlendPart> parts) : parts_(parts) {
+        for (const BlendPart& part : parts) total_ += part.weight;
+    }
+
+    double frames(double share) const {
+        double sum = 0;
+        for (const BlendPart& part : parts_) {
+            sum += part.weight * (moment_of(part, share) - static_cast<double>(part.first));
+        }
+        return sum / total_;
+    }
+    /// By bisection: frames ascend with the share.
+    double share(double frames) const {
+        double low = 0, high = 1;
+        for (int i = 0; i < 52; ++i) {
+            const double middle = (low + high) / 2;
+            (this->frames(middle) <= frames ? low : high) = middle;
+        }
+        return low;
+    }
+
+  private:
+    std::span<const BlendPart> parts_;
+    double total_ = 0;
+};
+
+void check(std::span<const BlendPart> parts) {
     if (parts.empty()) throw std::invalid_argument("there is nothing to blend");
-    double frames = 0, total = 0;
     for (const BlendPart& part : parts) {
         if (part.clip->rate != parts.front().clip->rate) {
             throw std::invalid_argument("motions to be blended must have one rate");
         }
-        frames += part.weight * static_cast<double>(part.end - part.first);
-        total += part.weight;
+        check_registration(part.registration);
     }
+}
+
+}  // namespace
+
+Clip blend_motions(std::span<const BlendPart> parts) {
+    check(parts);
     MotionBlend blend(parts.front().clip->skeleton, parts.front().clip->rate);
-    const double length = std::max(1.0, std::nearbyint(frames / total));
+    const BlendTime time(parts);
+    const double whole = time.frames(1), length = std::max(1.0, std::nearbyint(whole));
+    double share_before = 0;
     for (double frame = 0; frame < length; ++frame) {
+        const double share = time.share(frame * whole / length);
         std::vector<MotionShare> shares;
         for (const BlendPart& part : parts) {
-            const double speed = static_cast<double>(part.end - part.first) / length;
-            const double moment = static_cast<double>(part.first) + frame * speed;
-            shares.push_back({part.clip, moment, moment - speed, part.weight});
+            const double moment = moment_of(part, share);
+            shares.push_back({.clip = part.clip,
+                              .moment = moment,
+                              .moment_before = moment_of(part, share_before),
+                              .weight = part.weight,
+                              .support = support_at(part.support, moment)});
         }
         blend.append(shares);
+        share_before = share;
     }
     return blend.clip();
 }

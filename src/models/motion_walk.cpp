@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "kinetome/models/motion_blend.h"
+#include "registration.h"
 
 namespace kinetome {
 namespace {
@@ -30,13 +31,7 @@ struct Fade {
     std::span<const double> registration = {};  ///< MotionRun::registration
 
     double frames() const { return time(1); }
-    double in_share(double share) const {
-        if (registration.empty()) return share;
-        const double at = share * static_cast<double>(registration.size() - 1);
-        const auto knot = std::min(static_cast<size_t>(at), registration.size() - 2);
-        return std::lerp(registration[knot], registration[knot + 1],
-                         at - static_cast<double>(knot));
-    }
+    double in_share(double share) const { return registered_share(registration, share); }
     double time(double share) const {
         const double seen_out = out * (share - smoothstep_area(share));
         if (registration.empty()) return seen_out + in * smoothstep_area(share);
@@ -117,20 +112,6 @@ void for_each_frame(std::span<const MotionRun> runs, const Visit& visit) {
         while (timed[begin].end <= at) ++begin;
         while (end < timed.size() && timed[end].start <= at) ++end;
         visit(at, std::span(timed).subspan(begin, end - begin));
-    }
-}
-
-FootSupport support_at(const std::vector<FootSupport>& support, double moment) {
-    if (support.empty()) return {};
-    const int64_t last = static_cast<int64_t>(support.size()) - 1;
-    return support[static_cast<size_t>(std::clamp<int64_t>(std::llround(moment), 0, last))];
-}
-
-void check_registration(const std::vector<double>& registration) {
-    if (registration.empty()) return;
-    if (registration.size() < 2 || registration.front() != 0 || registration.back() != 1 ||
-        !std::ranges::is_sorted(registration)) {
-        throw std::invalid_argument("a registration does not ascend from 0 to 1");
     }
 }
 

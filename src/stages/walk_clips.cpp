@@ -82,20 +82,39 @@ const Clip& WalkClips::clip(int32_t number) {
 
 const Crossing& WalkClips::crossing(int32_t entry, int32_t exit) {
     const auto [found, is_new] = crossings_.try_emplace({entry, exit});
-    Crossing& crossing = found->second;
-    if (!is_new) return crossing;
+    if (is_new) {
+        found->second = crossing(entry, exit,
+                                 fade_lengths(graph_.nodes.graph.piece(entry),
+                                              graph_.nodes.graph.piece(exit), fade_frames()));
+    }
+    return found->second;
+}
+
+Crossing WalkClips::crossing(int32_t entry, int32_t exit, const Crossing& fade) {
     const MotionPiece& in = graph_.nodes.graph.piece(entry);
     const MotionPiece& out = graph_.nodes.graph.piece(exit);
     const int64_t stride = stride_of(in, out, graph_.rate);
     const auto rows = static_cast<double>(stride);
-    const Crossing fade = fade_lengths(in, out, fade_frames());
-    crossing =
+    Crossing crossing =
         best_crossing(poses_of(clip(in.clip), in, stride), poses_of(clip(out.clip), out, stride),
                       fade.entry / rows, fade.exit / rows);
     crossing.entry *= rows;
     crossing.exit *= rows;
     if (!options_.registered) crossing.registration.clear();
     return crossing;
+}
+
+BlendPart WalkClips::part(int32_t piece, int32_t registered_to, double weight) {
+    const MotionPiece& own = graph_.nodes.graph.piece(piece);
+    const MotionPiece& other = graph_.nodes.graph.piece(registered_to);
+    BlendPart part{.clip = &clip(own.clip), .first = own.first, .end = own.end, .weight = weight};
+    part.support = supports_[static_cast<size_t>(own.clip)];
+    if (piece != registered_to) {
+        const Crossing whole{.entry = static_cast<double>(other.frames()),
+                             .exit = static_cast<double>(own.frames())};
+        part.registration = crossing(registered_to, piece, whole).registration;
+    }
+    return part;
 }
 
 std::vector<MotionRun> WalkClips::runs(const GraphWalk& walk) {

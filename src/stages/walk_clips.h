@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinetome/models/graph_walk.h"
+#include "kinetome/models/motion_blend.h"
 #include "kinetome/stages/primitive_walk.h"
 
 namespace kinetome {
@@ -25,6 +26,8 @@ class WalkClips {
 
     /// What the walk plays (runs_of_walk).
     std::vector<MotionRun> runs(const GraphWalk& walk);
+    /// A piece as a part of a blend, registered to another one unless the options are against it.
+    BlendPart part(int32_t piece, int32_t registered_to, double weight);
     /// How much faster the pose changes at most, going over from the one to the other, than in any
     /// piece of their clips, cm/s.
     double excess(int32_t entry, int32_t exit);
@@ -32,6 +35,8 @@ class WalkClips {
   private:
     const Clip& clip(int32_t number);
     const Crossing& crossing(int32_t entry, int32_t exit);
+    /// Where fades of these lengths pass best from the one piece to the other.
+    Crossing crossing(int32_t entry, int32_t exit, const Crossing& fade);
     double fade_frames() const { return options_.fade_seconds * graph_.rate; }
 
     const StoredGraph& graph_;

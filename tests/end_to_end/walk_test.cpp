@@ -1,4 +1,5 @@
 // What `walk` and the export of its graph promise.
+#include <cmath>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -181,6 +182,30 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
     const std::string told = require_program({"bundles", store.path}).output;
     CHECK(contains(told, "dangling frames"));
     CHECK(contains(told, "bundles.h5"));
+
+    // A blend of one motion is that motion; of several it has their mean length.
+    const auto blend = [&](const std::string& weights) {
+        return walk({"--blend", largest, "--weights", weights});
+    };
+    std::vector<int64_t> lengths;
+    for (const std::string& row : rows) {
+        if (!row.starts_with(largest + ",")) continue;
+        std::istringstream cells(row.substr(row.find(',', largest.size() + 1) + 1));
+        int64_t first_frame = 0, end_frame = 0;
+        char comma = 0;
+        cells >> first_frame >> comma >> end_frame;
+        lengths.push_back(end_frame - first_frame);
+    }
+    REQUIRE(lengths.size() > 1);
+    CHECK(contains(require_program(blend("1")).output,
+                   "motion        " + std::to_string(lengths[0]) + " frames"));
+    const auto mean = std::llround(double(lengths[0] + 2 * lengths[1]) / 3);
+    CHECK(contains(require_program(blend("1,2")).output,
+                   "motion        " + std::to_string(mean) + " frames"));
+    CHECK(contains(require_program(blend("0,0"), usage).errors, "one of them must be above 0"));
+    CHECK(contains(require_program(blend("1,-1"), usage).errors, "is no weight"));
+    CHECK(contains(require_program(walk({"--blend", "swimming"}), usage).errors,
+                   "no bundle has this label or number"));
 
     const auto score =
         lines_of(require_program({"evaluate", store.path, "--what", "bundles", "--truth",

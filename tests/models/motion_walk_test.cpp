@@ -68,6 +68,23 @@ TEST_CASE("a clip blended with itself is the clip, whatever the weights") {
     check_equal(joint_positions(blended), joint_positions(clip), 5e-3);
 }
 
+TEST_CASE("registered parts of a blend are seen together where they answer each other") {
+    MatrixF early = MatrixF::Zero(81, skeleton().dof_count()), late = early;
+    for (int64_t i = 0; i < 81; ++i) {
+        early(i, 6) = std::max(0.0F, 1 - std::abs(float(i - 20)) / 10);
+        late(i, 6) = std::max(0.0F, 1 - std::abs(float(i - 60)) / 10);
+    }
+    const Clip a = clip_of(early), b = clip_of(late);
+    std::vector<BlendPart> parts = {{&a, 0, 80, 1}, {&b, 0, 80, 1}};
+    CHECK(blend_motions(parts).motion.col(6).maxCoeff() < 0.6F);
+    parts[1].registration = {0, 0.75, 0.85, 0.92, 1};
+    const Clip together = blend_motions(parts);
+    CHECK(together.motion.col(6).maxCoeff() > 0.9F);
+    CHECK(together.frames() == 80);
+    parts[1].registration = {0, 0.75, 0.6, 1};
+    CHECK_THROWS_AS(blend_motions(parts), std::invalid_argument);
+}
+
 TEST_CASE("a single run is its frames of the clip, standing where they stood") {
     const Clip clip = clip_of(wandering(300));
     const Clip played = play_runs(std::vector{clip}, std::vector<MotionRun>{{0, 40, 260}});

@@ -37,4 +37,7 @@ using FootSupport = std::array<double, foot_roles.size()>;
 std::vector<FootSupport> foot_support(std::span<const FootContacts> contacts, double rate,
                                       double seconds = 0.1);
 
+/// That of the frame nearest to a moment, in frames; none at all where no support is given.
+FootSupport support_at(std::span<const FootSupport> support, double moment);
+
 }  // namespace kinetome

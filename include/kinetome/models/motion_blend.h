@@ -69,16 +69,22 @@ class MotionBlend {
     std::vector<Row> rows_;
 };
 
-/// Frames of a clip as one of several to be blended: [first, end), played in its share of the time.
+/// Frames of a clip as one of several to be blended: [first, end).
 struct BlendPart {
     const Clip* clip = nullptr;
     int64_t first = 0, end = 0;
     double weight = 1;
+    /// Shares of this part, ascending from 0 to 1, that answer even shares of what all parts are
+    /// registered to; empty: the same ones.
+    std::vector<double> registration = {};
+    std::span<const FootSupport> support = {};  ///< of the clip's frames; none: feet are not held
 };
 
-/// All parts at once from beginning to end, each at the speed that makes it last as long as the
-/// blend: the weighted mean of their lengths, rounded, at least a frame. Throws what MotionBlend
-/// throws, and std::invalid_argument for parts of different rates or none.
+/// All parts at once from beginning to end, each passing what answers the others at the same time:
+/// time passes as fast as in the weighted mean of the parts, so that the blend is as long as the
+/// weighted mean of their lengths, rounded, at least a frame. Throws what MotionBlend throws, and
+/// std::invalid_argument for parts of different rates, registrations that do not ascend from 0 to 1
+/// or no part.
 Clip blend_motions(std::span<const BlendPart> parts);
 
 }  // namespace kinetome
