@@ -161,15 +161,20 @@ TEST_CASE("sums over pieces have the same bits for any number of ranks, at every
 TEST_CASE("pieces of a rank that is held up are summed by the others on its machine") {
     const PieceLayout layout = layout_rows(40 * piece_frames);
     std::atomic<int> summed{0};
-    std::atomic<bool> others_helped{false};
+    std::atomic<bool> held_up{false}, others_helped{false};
     std::vector<std::optional<double>> sums(3);
     run_as_ranks(3, [&](Communicator& ranks) {
+        const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
         const auto leaf = [&](const RowRange& rows) {
-            // Without help, what is left of rank 0's share would wait for rank 0 for ever.
-            for (int pause = 0; ranks.rank() == 0 && summed < 39 && pause < 20'000; ++pause) {
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            if (ranks.rank() == 0) {
+                // At its first piece, until all others are summed: with help they are.
+                if (!held_up.exchange(true)) {
+                    for (int turn = 0; summed < 39 && turn < 20'000; ++turn) pause();
+                    others_helped = summed == 39;
+                }
+            } else {
+                while (!held_up) pause();  // else they may be done before rank 0 puts its share up
             }
-            if (ranks.rank() == 0 && summed == 39) others_helped = true;
             ++summed;
             return double(rows.size());
         };
