@@ -67,12 +67,15 @@ class GraphPicture {
     const Box& box(int32_t node) const { return boxes_[static_cast<size_t>(node)]; }
 
     Box box_of(int32_t node, double rate) const {
+        if (!nodes_.style.boxes_by_size) {
+            return {svg_text_width(nodes_.name_of(node)) + 12, 1.5 * piece_height};
+        }
         const auto members = graph_.members(node);
         const auto count = static_cast<double>(members.size());
         double frames = 0;
         for (const int32_t piece : members) frames += double(graph_.piece(piece).frames());
-        const double rows = nodes_.style.boxes_by_size ? std::sqrt(count) : 1.5;
-        return {std::max(least_side, pixels_a_second * frames / count / rate), piece_height * rows};
+        return {std::max(least_side, pixels_a_second * frames / count / rate),
+                piece_height * std::sqrt(count)};
     }
 
     /// The next of a ring follows the last most often; where none of the others does, it is the

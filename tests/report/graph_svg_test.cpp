@@ -100,3 +100,11 @@ TEST_CASE("a graph of many nodes without any arrow is drawn in lines") {
     CHECK(boxes.front().y < boxes.back().y);
     for (const Rectangle& box : boxes) CHECK(box.x + box.width < 1200);
 }
+
+TEST_CASE("boxes of primitives have room for their names, however short their motions") {
+    PrimitiveGraph graph = toy_graph();
+    graph.style = {};
+    const std::string picture = graph_svg("toy", graph, 120);
+    CHECK_THAT(picture, Contains(">walk (cluster 0)</text>"));
+    CHECK_THAT(picture, Contains(">cluster 2</text>"));
+}

@@ -7,11 +7,12 @@
 
 namespace kinetome {
 
-/// One self-contained picture, the same text for the same graph. A node is a box as wide as its
-/// mean length and, by style.boxes_by_size, as high as the root of its number of pieces: √B_h × B_w
-/// of S1; nodes that a walk can come back to are blue, others grey. Nodes that arrows join lie on
-/// one ring, in an order that follows the most frequent successions. Names are written into boxes
-/// with room for them and shown when pointed at. `rate`: frames a second of the graph's pieces.
+/// One self-contained picture, the same text for the same graph. A node is a box, by
+/// style.boxes_by_size as wide as its mean length and as high as the root of its number of pieces
+/// (√B_h × B_w of S1), else as wide as its name; nodes that a walk can come back to are blue,
+/// others grey. Nodes that arrows join lie on one ring, in an order that follows the most frequent
+/// successions. Names are written into boxes with room for them and shown when pointed at. `rate`:
+/// frames a second of the graph's pieces.
 std::string graph_svg(const std::string& title, const PrimitiveGraph& graph, double rate);
 
 }  // namespace kinetome
