@@ -37,6 +37,16 @@ class MarkerShards {
             shards_.emplace_back(generation.open(receipt->file.file_name));
         }
     }
+    /// Of one clip: opening a shard reads all of it, to verify it.
+    MarkerShards(const Generation& generation, const std::string& clip) {
+        const auto& clips = generation.catalog().clips;
+        const auto place = std::ranges::find(clips, clip, &CatalogClip::name);
+        for (const Receipt* receipt : generation.ledger().of_stage("features")) {
+            if (place != clips.end() && receipt->shard == place->shard) {
+                shards_.emplace_back(generation.open(receipt->file.file_name));
+            }
+        }
+    }
 
     MatrixF read(const std::string& clip, const RowRange& frames) const {
         for (const FeatureShardReader& shard : shards_) {
@@ -90,7 +100,7 @@ Asked asked_clip(const Generation& generation, const SignatureQuery& query) {
         const auto number = static_cast<int32_t>(clip - signatures.clips.begin());
         const RowRange frames = at_pose_rate(asked_frames(query, clip->source_frames),
                                              clip->source_rate, signatures.pose_rate, clip->frames);
-        MatrixF markers = MarkerShards(generation).read(query.clip, frames);
+        MatrixF markers = MarkerShards(generation, query.clip).read(query.clip, frames);
         PlacedSignature signature = place_signature(
             part_of(signatures.index.signature(number), frames), markers, signatures.axes);
         return {std::move(signatures), std::move(signature), std::move(markers)};
