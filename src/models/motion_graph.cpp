@@ -89,6 +89,12 @@ std::span<const int32_t> MotionGraph::members(int32_t node) const {
     return part(members_, members_of_, static_cast<size_t>(node));
 }
 
+double MotionGraph::mean_frames(int32_t node) const {
+    int64_t frames = 0;
+    for (const int32_t index : members(node)) frames += piece(index).frames();
+    return static_cast<double>(frames) / static_cast<double>(members(node).size());
+}
+
 std::span<const int32_t> MotionGraph::targets(int32_t node) const {
     return part(targets_, edges_of_, static_cast<size_t>(node));
 }

@@ -70,12 +70,8 @@ class GraphPicture {
         if (!nodes_.style.boxes_by_size) {
             return {svg_text_width(nodes_.name_of(node)) + 12, 1.5 * piece_height};
         }
-        const auto members = graph_.members(node);
-        const auto count = static_cast<double>(members.size());
-        double frames = 0;
-        for (const int32_t piece : members) frames += double(graph_.piece(piece).frames());
-        return {std::max(least_side, pixels_a_second * frames / count / rate),
-                piece_height * std::sqrt(count)};
+        return {std::max(least_side, pixels_a_second * graph_.mean_frames(node) / rate),
+                piece_height * std::sqrt(double(graph_.members(node).size()))};
     }
 
     /// The next of a ring follows the last most often; where none of the others does, it is the

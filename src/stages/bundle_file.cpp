@@ -85,11 +85,8 @@ void write_bundle_graph(ArtifactWriter& file, const StoredBundleGraph& stored) {
     std::vector<double> widths;
     std::vector<int64_t> successions, transition_frames;
     for (int32_t node = 0; node < graph.nodes(); ++node) {
-        const auto members = graph.members(node);
-        double frames = 0;
-        for (const int32_t piece : members) frames += double(graph.piece(piece).frames());
-        heights.push_back(static_cast<int32_t>(members.size()));
-        widths.push_back(frames / double(members.size()));
+        heights.push_back(static_cast<int32_t>(graph.members(node).size()));
+        widths.push_back(graph.mean_frames(node));
         const auto targets = graph.targets(node);
         for (size_t edge = 0; edge < targets.size(); ++edge) {
             from.push_back(node);

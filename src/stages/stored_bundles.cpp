@@ -53,15 +53,6 @@ int64_t height_of(const StoredGraph& graph, int32_t node) {
     return static_cast<int64_t>(graph.nodes.graph.members(node).size());
 }
 
-/// The mean length, in frames at the graph's rate.
-double width_of(const StoredGraph& graph, int32_t node) {
-    double frames = 0;
-    for (const int32_t piece : graph.nodes.graph.members(node)) {
-        frames += static_cast<double>(graph.nodes.graph.piece(piece).frames());
-    }
-    return frames / static_cast<double>(height_of(graph, node));
-}
-
 int64_t takes_of(const StoredGraph& graph, int32_t node) {
     std::set<int32_t> takes;
     for (const int32_t piece : graph.nodes.graph.members(node)) {
@@ -89,13 +80,13 @@ Table bundle_list(const OpenStore& open, const std::filesystem::path& labels) {
     std::vector<std::pair<double, int32_t>> largest_first;
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
         largest_first.emplace_back(
-            -bundle_volume(height_of(graph, node), width_of(graph, node), rho), node);
+            -bundle_volume(height_of(graph, node), graph.nodes.graph.mean_frames(node), rho), node);
     }
     std::ranges::sort(largest_first);
     for (const auto& [volume, node] : largest_first) {
         const auto at = static_cast<size_t>(node);
         table.rows.push_back({int64_t{graph.nodes.cluster_of[at]}, graph.nodes.label_of[at],
-                              height_of(graph, node), width_of(graph, node), -volume,
+                              height_of(graph, node), graph.nodes.graph.mean_frames(node), -volume,
                               takes_of(graph, node)});
     }
     return table;

@@ -100,14 +100,10 @@ std::string dot_text(std::string_view text) {
 
 /// Inches: two a second of the mean length, half of one for the first piece.
 std::string box_size(const StoredGraph& graph, int32_t node) {
-    const auto members = graph.nodes.graph.members(node);
-    double frames = 0;
-    for (const int32_t piece : members) {
-        frames += static_cast<double>(graph.nodes.graph.piece(piece).frames());
-    }
-    const auto count = static_cast<double>(members.size());
+    const MotionGraph& motions = graph.nodes.graph;
     return fmt::format(", fixedsize=true, width={:.2f}, height={:.2f}",
-                       2 * frames / count / graph.rate, std::sqrt(count) / 2);
+                       2 * motions.mean_frames(node) / graph.rate,
+                       std::sqrt(static_cast<double>(motions.members(node).size())) / 2);
 }
 
 /// What the graph is called after.

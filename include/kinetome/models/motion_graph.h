@@ -43,6 +43,8 @@ class MotionGraph {
     int32_t node_of(int32_t piece) const { return node_of_[static_cast<size_t>(piece)]; }
     /// Pieces of a node, ascending.
     std::span<const int32_t> members(int32_t node) const;
+    /// Mean length of a node's pieces: B_w of S1.
+    double mean_frames(int32_t node) const;
 
     /// Nodes that a node's edges lead to, ascending; itself, where it follows itself.
     std::span<const int32_t> targets(int32_t node) const;
