@@ -1,10 +1,10 @@
 #include "knn_axes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "kinetome/math/moments.h"
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -23,11 +23,11 @@ Moments sampled_moments(const MatrixFView& rows) {
         rows.data(), count, rows.cols(), Eigen::OuterStride<>(step * rows.outerStride())));
 }
 
-int64_t fewest_with(const VectorD& ascending_variances, double share) {
-    const double wanted = share * ascending_variances.sum();
+int64_t fewest_with(const VectorD& variances, double share) {
+    const double wanted = share * variances.sum();
     int64_t count = 0;
-    for (double sum = 0; sum < wanted && count < ascending_variances.size(); ++count) {
-        sum += ascending_variances[ascending_variances.size() - 1 - count];
+    for (double sum = 0; sum < wanted && count < variances.size(); ++count) {
+        sum += variances[count];
     }
     return std::max<int64_t>(count, 1);
 }
@@ -41,12 +41,9 @@ LeadingAxes::LeadingAxes(const MatrixFView& rows) {
         return;
     }
     const Moments moments = sampled_moments(rows);
-    const Eigen::SelfAdjointEigenSolver<MatrixD> solver(moments.scatter);
+    const SymmetricEigen eigen = symmetric_eigen(moments.scatter);
     mean_ = moments.mean;
-    axes_ = solver.eigenvectors()
-                .rightCols(fewest_with(solver.eigenvalues(), kept_share))
-                .rowwise()
-                .reverse();
+    axes_ = eigen.vectors.leftCols(fewest_with(eigen.values, kept_share));
 }
 
 void LeadingAxes::project(const MatrixFView& rows, MatrixF& projected, VectorF& slack) const {

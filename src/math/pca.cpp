@@ -1,11 +1,12 @@
 #include "kinetome/math/pca.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -72,15 +73,6 @@ int64_t components_holding(const VectorD& variances, double share) {
     return variances.size();
 }
 
-/// An eigenvector's sign is arbitrary: this fixes it.
-void make_largest_entry_positive(MatrixD& components, int64_t column) {
-    int64_t largest = 0;
-    for (int64_t j = 1; j < components.rows(); ++j) {
-        if (std::abs(components(j, column)) > std::abs(components(largest, column))) largest = j;
-    }
-    if (components(largest, column) < 0) components.col(column) *= -1;
-}
-
 }  // namespace
 
 double Pca::kept_share() const {
@@ -133,16 +125,11 @@ Pca fit_pca(const Moments& moments, const VectorD& floor, double share) {
     Pca pca;
     pca.mean = moments.mean;
     pca.scale = floored_deviations(moments, floor);
-    const MatrixD covariance = standardised_covariance(moments, pca.scale);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    if (solver.info() != Eigen::Success) {
-        throw std::invalid_argument("the covariance has no eigenvalues that can be found");
-    }
-    // Ascending there, descending here; rounding may leave a zero slightly negative.
-    pca.variances = solver.eigenvalues().reverse().cwiseMax(0.0);
+    SymmetricEigen eigen = symmetric_eigen(standardised_covariance(moments, pca.scale));
+    pca.variances = eigen.values.cwiseMax(0.0);
     const int64_t kept = components_holding(pca.variances, share);
-    pca.components = solver.eigenvectors().rowwise().reverse().leftCols(kept);
-    for (int64_t k = 0; k < kept; ++k) make_largest_entry_positive(pca.components, k);
+    for (int64_t k = 0; k < kept; ++k) make_largest_entry_positive(eigen.vectors.col(k));
+    pca.components = eigen.vectors.leftCols(kept);
     return pca;
 }
 

@@ -1,10 +1,10 @@
 #include "warp_bounds.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "kinetome/math/moments.h"
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -23,8 +23,7 @@ WarpBounds::WarpBounds(const MatrixF& rows, std::span<const RowRange> sequences,
     : steps_(steps.begin(), steps.end()) {
     const Moments moments = moments_of(rows);
     mean_ = moments.mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(moments.scatter);
-    axes_ = solver.eigenvectors().rightCols(std::min(rows.cols(), most_axes));
+    axes_ = symmetric_eigen(moments.scatter).vectors.leftCols(std::min(rows.cols(), most_axes));
 
     int64_t gap = 0;
     for (const WarpStep& step : steps_) gap = std::max<int64_t>(gap, step.second);

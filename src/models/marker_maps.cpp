@@ -1,9 +1,10 @@
 #include "kinetome/models/marker_maps.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -13,11 +14,11 @@ constexpr double mm_per_cm = 10;
 /// The solution of least norm of A x = b for a symmetric A without negative eigenvalues.
 MatrixD least_norm_solution(const MatrixD& a, const MatrixD& b) {
     if (a.rows() == 0) return b;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
-    const VectorD& values = solver.eigenvalues();
-    const double least = 1e-12 * std::max(values[values.size() - 1], 0.0);
-    const VectorD inverse = values.unaryExpr([&](double v) { return v > least ? 1 / v : 0.0; });
-    return solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() * b));
+    const SymmetricEigen eigen = symmetric_eigen(a);
+    const double least = 1e-12 * std::max(eigen.values[0], 0.0);
+    const VectorD inverse =
+        eigen.values.unaryExpr([&](double v) { return v > least ? 1 / v : 0.0; });
+    return eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * b));
 }
 
 /// What the parent's map weighs against those of `count` poses, as sums over poses. Noise is part

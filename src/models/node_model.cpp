@@ -1,9 +1,9 @@
 #include "node_model.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "kinetome/math/symmetric_eigen.h"
 #include "kinetome/models/pose_hierarchy.h"
 
 namespace kinetome {
@@ -13,12 +13,11 @@ constexpr double mm_per_cm = 10;
 /// Variances below this share of the largest are rounding: their directions mean nothing.
 constexpr double least_variance_share = 1e-12;
 
-using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-
-/// Squared error, cm² per marker, that the largest d of all variances (ascending) leave.
-double variance_left(const VectorD& ascending, int64_t dimension) {
+/// Squared error, cm² per marker, that the largest d of all variances leave. The least are added
+/// first: rounding takes nothing from them.
+double variance_left(const VectorD& variances, int64_t dimension) {
     double left = 0;
-    for (int64_t i = 0; i + dimension < ascending.size(); ++i) left += std::max(ascending[i], 0.0);
+    for (int64_t i = variances.size(); i-- > dimension;) left += std::max(variances[i], 0.0);
     return left;
 }
 
@@ -27,21 +26,12 @@ double least_variance_left(const MatrixD& covariance, int64_t dimension) {
     return covariance.trace() - std::sqrt(static_cast<double>(dimension)) * covariance.norm();
 }
 
-/// An eigenvector's sign is arbitrary: this fixes it.
-void make_largest_entry_positive(Eigen::Ref<VectorD> vector) {
-    Eigen::Index largest = 0;
-    vector.cwiseAbs().maxCoeff(&largest);
-    if (vector[largest] < 0) vector *= -1;
-}
-
-MatrixD leading_directions(const Solver& solver, int64_t dimension) {
-    const VectorD& ascending = solver.eigenvalues();
-    const int64_t columns = ascending.size();
-    const double least = least_variance_share * ascending[columns - 1];
+MatrixD leading_directions(const SymmetricEigen& eigen, int64_t dimension) {
+    const int64_t columns = eigen.values.size();
+    const double least = std::max(least_variance_share * eigen.values[0], 0.0);
     MatrixD basis = MatrixD::Zero(columns, dimension);
-    for (int64_t k = 0; k < std::min(dimension, columns); ++k) {
-        if (!(ascending[columns - 1 - k] > std::max(least, 0.0))) break;
-        VectorD direction = solver.eigenvectors().col(columns - 1 - k);
+    for (int64_t k = 0; k < std::min(dimension, columns) && eigen.values[k] > least; ++k) {
+        VectorD direction = eigen.vectors.col(k);
         make_largest_entry_positive(direction);
         basis.col(k) = direction;
     }
@@ -52,10 +42,9 @@ MatrixD leading_directions(const Solver& solver, int64_t dimension) {
 VectorD direction_of_most_spread(const MatrixD& covariance) {
     constexpr double least_deviation = 1e-4;  // cm
     if (covariance.rows() == 0) return {};
-    const Solver solver(covariance);
-    const double variance = solver.eigenvalues()[covariance.rows() - 1];
-    if (!(variance > least_deviation * least_deviation)) return {};
-    VectorD direction = solver.eigenvectors().rightCols(1);
+    const SymmetricEigen eigen = symmetric_eigen(covariance);
+    if (!(eigen.values[0] > least_deviation * least_deviation)) return {};
+    VectorD direction = eigen.vectors.col(0);
     make_largest_entry_positive(direction);
     return direction;
 }
@@ -73,23 +62,20 @@ FittedNode fit_node(const Moments& poses, const std::vector<int32_t>& principal_
     model.rows = poses.count;
     model.mean = poses.mean;
     model.map = fit_marker_map(poses, principal_columns, parent, options.maps);
-    const auto fit_leaf = [&](Solver& solver) {
-        solver.compute(covariance);
+    const auto fit_leaf = [&] {
+        const SymmetricEigen eigen = symmetric_eigen(covariance);
         model.error =
-            mm_per_cm * std::sqrt(variance_left(solver.eigenvalues(), options.dimension) / markers);
-        model.basis = leading_directions(solver, options.dimension);
+            mm_per_cm * std::sqrt(variance_left(eigen.values, options.dimension) / markers);
+        model.basis = leading_directions(eigen, options.dimension);
     };
-    if (least_variance_left(covariance, options.dimension) <= allowed) {
-        Solver solver(covariance, Eigen::EigenvaluesOnly);
-        if (variance_left(solver.eigenvalues(), options.dimension) <= allowed) fit_leaf(solver);
+    if (least_variance_left(covariance, options.dimension) <= allowed &&
+        variance_left(symmetric_eigenvalues(covariance), options.dimension) <= allowed) {
+        fit_leaf();
     }
     if (!fitted.may_be_leaf() || options.leaf_rule == LeafRule::maximum) {
         fitted.spread_along = direction_of_most_spread(model.map.principal_covariance);
     }
-    if (!fitted.may_be_leaf() && !fitted.can_split()) {
-        Solver solver;
-        fit_leaf(solver);
-    }
+    if (!fitted.may_be_leaf() && !fitted.can_split()) fit_leaf();
     return fitted;
 }
 

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -47,11 +48,8 @@ int64_t signature_axis_count(int64_t columns) {
 MatrixF signature_axes(const PoseHierarchy& hierarchy) {
     const double scale =
         mm_per_cm / std::sqrt(static_cast<double>(compared_markers(hierarchy.columns())));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance_of(hierarchy));
-    return (scale * solver.eigenvectors()
-                        .rightCols(signature_axis_count(hierarchy.columns()))
-                        .rowwise()
-                        .reverse())
+    const SymmetricEigen eigen = symmetric_eigen(covariance_of(hierarchy));
+    return (scale * eigen.vectors.leftCols(signature_axis_count(hierarchy.columns())))
         .cast<float>();
 }
 

@@ -1,6 +1,5 @@
 #include "kinetome/models/ppca_segmentation.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <stdexcept>
 
 #include "kinetome/math/moments.h"
+#include "kinetome/math/symmetric_eigen.h"
 
 namespace kinetome {
 namespace {
@@ -29,11 +29,8 @@ VectorD with_isotropic_rest(VectorD variances, double kept_share) {
 }
 
 double distance_between(const Moments& known, const Moments& ahead, double kept_variance) {
-    const MatrixD covariance = known.scatter / double(known.count - 1);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    const VectorD variances =
-        with_isotropic_rest(solver.eigenvalues().reverse().cwiseMax(0.0), kept_variance);
-    const Eigen::MatrixXd axes = solver.eigenvectors().rowwise().reverse();
+    const auto [values, axes] = symmetric_eigen(known.scatter / double(known.count - 1));
+    const VectorD variances = with_isotropic_rest(values.cwiseMax(0.0), kept_variance);
     const VectorD offset = axes.transpose() * (ahead.mean - known.mean);
     double distance = 0;
     for (int64_t j = 0; j < variances.size(); ++j) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 
 #include "kinetome/math/kmeans.h"
+#include "kinetome/math/symmetric_eigen.h"
 #include "kinetome/models/pose_hierarchy.h"
 
 namespace kinetome {
@@ -58,13 +58,13 @@ struct Components {
 
 /// The fewest, at least one, that leave no more than the tolerance unexplained.
 Components leading_components(const MatrixD& covariance, int64_t markers, double tolerance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    const VectorD variances = solver.eigenvalues().reverse().cwiseMax(0.0);
+    const SymmetricEigen eigen = symmetric_eigen(covariance);
+    const VectorD variances = eigen.values.cwiseMax(0.0);
     const double allowed = std::pow(tolerance / mm_per_cm, 2) * static_cast<double>(markers);
     double left = 0;
     int64_t kept = variances.size();
     while (kept > 1 && left + variances[kept - 1] <= allowed) left += variances[--kept];
-    return {solver.eigenvectors().rowwise().reverse().leftCols(kept), variances.head(kept)};
+    return {eigen.vectors.leftCols(kept), variances.head(kept)};
 }
 
 /// What a marker brings to the cover: the clusters its coordinates are in, and how much of each

@@ -1,12 +1,12 @@
 #include "kinetome/models/hierarchy_growth.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "kinetome/math/symmetric_eigen.h"
 #include "support/thread_ranks.h"
 #include "toy_poses.h"
 
@@ -50,22 +50,16 @@ void divide(const MatrixD& poses, const Columns& principal, const PoseHierarchyO
     for (size_t i = 0; i < rows.size(); ++i) own.row(int64_t(i)) = poses.row(rows[i]);
     const Eigen::RowVectorXd mean = own.colwise().mean();
     const MatrixD centred = own.rowwise() - mean;
-    const Eigen::MatrixXd covariance = centred.transpose() * centred / double(rows.size());
-    const VectorD variances =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues();
-    const double left = std::max(variances.head(variances.size() - options.dimension).sum(), 0.0);
+    const MatrixD covariance = centred.transpose() * centred / double(rows.size());
+    const VectorD variances = symmetric_eigenvalues(covariance);
+    const double left = std::max(variances.tail(variances.size() - options.dimension).sum(), 0.0);
     if (10 * std::sqrt(left / double(compared_markers(poses.cols()))) <= options.leaf_tolerance) {
         leaves.insert(rows);
         return;
     }
     const MatrixD values = own(Eigen::all, principal);
-    const Eigen::MatrixXd of_values = covariance(principal, principal);
-    const VectorD direction =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(of_values).eigenvectors().rightCols(1);
-    VectorD normal = direction;
-    Eigen::Index largest = 0;
-    normal.cwiseAbs().maxCoeff(&largest);
-    if (normal[largest] < 0) normal *= -1;
+    VectorD normal = symmetric_eigen(covariance(principal, principal)).vectors.col(0);
+    make_largest_entry_positive(normal);
     double offset = values.colwise().mean().dot(normal);
     std::vector<int64_t> below, above;
     for (int iteration = 0; iteration < options.split_iterations; ++iteration) {
