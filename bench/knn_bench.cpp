@@ -13,12 +13,10 @@
 
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -35,6 +33,7 @@
 #ifdef KINETOME_WITH_NANOFLANN
 #include "nanoflann_search.h"
 #endif
+#include "program.h"
 #include "takes.h"
 
 namespace {
@@ -330,23 +329,13 @@ bool compare_all(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app("How fast are the nearest frames found?");
-    app.add_option("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc")->required();
-    app.add_option("--queries", options.queries, "frames that are asked for")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_option("--turns", options.turns)->check(CLI::PositiveNumber)->capture_default_str();
-    app.add_option("--threads", options.threads)->check(CLI::PositiveNumber)->capture_default_str();
-    app.add_option("--leaf", options.leaf, "rows in a leaf of the trees")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_option("--radius", options.radii, "cm, one or several")->capture_default_str();
-    app.add_option("--neighbours", options.neighbours)->capture_default_str();
-    CLI11_PARSE(app, argc, argv);
-    try {
-        return compare_all(options) ? 0 : 1;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 70;
-    }
+    bench::Program program("How fast are the nearest frames found?");
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
+    program.count("--queries", options.queries, "frames that are asked for");
+    program.count("--turns", options.turns, "of each measurement");
+    program.count("--threads", options.threads);
+    program.count("--leaf", options.leaf, "rows in a leaf of the trees");
+    program.option("--radius", options.radii, "cm, one or several");
+    program.count("--neighbours", options.neighbours);
+    return program.run(argc, argv, [&] { return compare_all(options); });
 }

@@ -10,9 +10,7 @@
 // whose labels are known; and how long the labels of 480 primitives last, by 50 others.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -23,6 +21,7 @@
 #include "kinetome/models/label_table.h"
 #include "labelled_primitives.h"
 #include "nearest_by_warping.h"
+#include "program.h"
 
 namespace {
 
@@ -239,26 +238,15 @@ bool run(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app{"How far can transferred labels be trusted, and how fast are they transferred?"};
-    app.add_option("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc")->required();
-    app.add_option("truth", options.truth, "CSV of its annotated activities")->required();
-    app.add_option("--takes", options.takes, "annotated takes, separated by commas")
-        ->delimiter(',');
-    app.add_option("--seeds", options.seeds, "of generated corpora, separated by commas")
-        ->delimiter(',');
-    app.add_option("--frames", options.frames, "of each generated corpus")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--subjects", options.subjects, "of each generated corpus")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--turns", options.turns, "of the measurement of time")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--threads", options.threads, "for all but the measurement of time")
-        ->check(CLI::PositiveNumber);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        return run(options) ? 0 : 1;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 70;
-    }
+    bench::Program program(
+        "How far can transferred labels be trusted, and how fast are they transferred?");
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
+    program.argument("truth", options.truth, "CSV of its annotated activities");
+    program.option("--takes", options.takes, "annotated takes, separated by commas");
+    program.option("--seeds", options.seeds, "of generated corpora, separated by commas");
+    program.count("--frames", options.frames, "of each generated corpus");
+    program.count("--subjects", options.subjects, "of each generated corpus");
+    program.count("--turns", options.turns, "of the measurement of time");
+    program.count("--threads", options.threads, "for all but the measurement of time");
+    return program.run(argc, argv, [&] { return run(options); });
 }

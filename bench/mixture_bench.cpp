@@ -3,7 +3,6 @@
 //   mixture_bench --scaling          one thread against two, run in turns
 //   mixture_bench --json             one line for mixture_peer.py, which compares with scikit-learn
 // An evaluation is the density of one cluster at one frame.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,6 +20,7 @@
 #include "kinetome/base/random.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/math/mixture.h"
+#include "program.h"
 
 namespace {
 
@@ -210,24 +210,20 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("EM for isotropic mixtures: time and likelihood of each iteration");
     Options options;
-    app.add_option("--frames", options.frames, "rows to generate or to read");
-    app.add_option("--dimension", options.dimension, "columns");
-    app.add_option("--clusters", options.clusters, "clusters");
-    app.add_option("--threads", options.threads, "threads");
-    app.add_option("--iterations", options.iterations, "iterations");
-    app.add_option("--repetitions", options.repetitions, "turns of --scaling");
-    app.add_option("--rows", options.rows, "raw float32 rows to use instead of generated ones");
-    app.add_option("--dump", options.dump, "write rows and start to this directory and stop");
-    app.add_flag("--scaling", options.scaling, "one thread against two");
-    app.add_flag("--json", options.json, "one line for mixture_peer.py");
-    CLI11_PARSE(app, argc, argv);
-    try {
+    bench::Program program("EM for isotropic mixtures: time and likelihood of each iteration");
+    program.count("--frames", options.frames, "rows to generate or to read");
+    program.count("--dimension", options.dimension, "columns");
+    program.count("--clusters", options.clusters, "clusters");
+    program.count("--threads", options.threads, "threads");
+    program.count("--iterations", options.iterations, "iterations");
+    program.count("--repetitions", options.repetitions, "turns of --scaling");
+    program.option("--rows", options.rows, "raw float32 rows to use instead of generated ones");
+    program.option("--dump", options.dump, "write rows and start to this directory and stop");
+    program.flag("--scaling", options.scaling, "one thread against two");
+    program.flag("--json", options.json, "one line for mixture_peer.py");
+    return program.run(argc, argv, [&] {
         run(options);
-    } catch (const std::exception& error) {
-        std::cerr << "mixture_bench: " << error.what() << '\n';
-        return 1;
-    }
-    return 0;
+        return true;
+    });
 }

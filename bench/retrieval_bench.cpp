@@ -10,9 +10,7 @@
 // warping (24 principal components of the markers at 30 Hz, at most twice as fast or slow).
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <limits>
 #include <map>
@@ -27,6 +25,7 @@
 #include "kinetome/synthesis/corpus_generator.h"
 #include "kinetome/synthesis/take.h"
 #include "marker_takes.h"
+#include "program.h"
 
 namespace {
 
@@ -392,18 +391,17 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app{"How well and how fast does the signature index find what warping finds?"};
-    app.add_option("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc")->required();
-    app.add_option("truth", options.truth, "CSV of its annotated activities");
-    app.add_option("--tolerance", options.tolerance, "of the leaves, mm per marker");
-    app.add_option("--growth", options.growth, "sizes of collections of varied takes, frames");
-    app.add_option("--growth-tolerance", options.growth_tolerance, "of their leaves");
-    app.add_option("--threads", options.threads, "to grow hierarchies with");
-    CLI11_PARSE(app, argc, argv);
-    try {
+    bench::Program program(
+        "How well and how fast does the signature index find what warping finds?");
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
+    program.argument("truth", options.truth, "CSV of its annotated activities",
+                     bench::Program::Need::optional);
+    program.option("--tolerance", options.tolerance, "of the leaves, mm per marker");
+    program.option("--growth", options.growth, "sizes of collections of varied takes, frames");
+    program.option("--growth-tolerance", options.growth_tolerance, "of their leaves");
+    program.count("--threads", options.threads, "to grow hierarchies with");
+    return program.run(argc, argv, [&] {
         run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 70;
-    }
+        return true;
+    });
 }

@@ -10,9 +10,7 @@
 // movement without a break; and how long all takes last, threads sharing them.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,6 +22,7 @@
 #include "kinetome/models/primitive_clusters.h"
 #include "kinetome/models/segmentation_score.h"
 #include "kinetome/synthesis/take.h"
+#include "program.h"
 #include "takes.h"
 
 namespace {
@@ -184,23 +183,20 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app{"How well and how fast are takes segmented?"};
-    app.add_option("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc")->required();
-    app.add_option("truth", options.truth, "CSV of its annotated activities");
-    app.add_option("--method", options.method, "of finding activities and primitives")
-        ->check(CLI::IsMember({"repetition", "region-growing"}));
-    app.add_option("--turns", options.turns, "of each measurement")->check(CLI::PositiveNumber);
-    app.add_option("--threads", options.threads, "for the whole corpus")
-        ->check(CLI::PositiveNumber);
-    CLI11_PARSE(app, argc, argv);
-    if (options.method == "region-growing") {
-        options.activities.method = ActivityMethod::region_growing;
-        options.primitives.method = PrimitiveMethod::warping_paths;
-    }
-    try {
+    bench::Program program("How well and how fast are takes segmented?");
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
+    program.argument("truth", options.truth, "CSV of its annotated activities",
+                     bench::Program::Need::optional);
+    program.choice("--method", options.method, {"repetition", "region-growing"},
+                   "of finding activities and primitives");
+    program.count("--turns", options.turns, "of each measurement");
+    program.count("--threads", options.threads, "for the whole corpus");
+    return program.run(argc, argv, [&] {
+        if (options.method == "region-growing") {
+            options.activities.method = ActivityMethod::region_growing;
+            options.primitives.method = PrimitiveMethod::warping_paths;
+        }
         run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 70;
-    }
+        return true;
+    });
 }

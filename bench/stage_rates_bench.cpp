@@ -6,9 +6,9 @@
 //       --frames   of the corpus (default: 200000)
 //       --turns    of each measurement, of which the least counts (default: 3)
 //       --threads  that are "all" (default: what was granted)
+#include <fmt/format.h>
 #include <stdlib.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -16,10 +16,12 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/random.h"
 #include "kinetome/base/resources.h"
@@ -36,11 +38,14 @@
 #include "kinetome/store/feature_store.h"
 #include "kinetome/store/neighbor_store.h"
 #include "kinetome/synthesis/corpus_generator.h"
+#include "program.h"
 
 namespace {
 
 using namespace kinetome;
 namespace fs = std::filesystem;
+
+constexpr int64_t least_frames = 10'000;  // fewer take no time that could be measured
 
 struct Options {
     fs::path output;
@@ -346,27 +351,21 @@ Rates measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("how fast this machine works, for `kinetome plan --rates`");
     Options options;
-    app.add_option("-o,--output", options.output, "file to write (default: standard output)");
-    app.add_option("--frames", options.frames, "of the generated corpus")
-        ->capture_default_str()
-        ->check(CLI::Range(int64_t{10'000}, std::numeric_limits<int64_t>::max()));
-    app.add_option("--turns", options.turns, "of each measurement, of which the least counts")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--threads", options.threads, "that are \"all\" (default: what was granted)");
-    CLI11_PARSE(app, argc, argv);
-    try {
+    bench::Program program("How fast does this machine work? For `kinetome plan --rates`");
+    program.option("-o,--output", options.output, "file to write (default: standard output)");
+    program.count("--frames", options.frames, "of the generated corpus");
+    program.count("--turns", options.turns, "of each measurement, of which the least counts");
+    program.option("--threads", options.threads, "that are \"all\" (default: what was granted)");
+    return program.run(argc, argv, [&] {
+        if (options.frames < least_frames)
+            throw UsageError(fmt::format("--frames {}: at least {}", options.frames, least_frames));
         const std::string text = write_rates(measure(options));
         if (options.output.empty()) {
             std::fputs(text.c_str(), stdout);
         } else {
             write_file_atomically(options.output, text);
         }
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "stage_rates_bench: %s\n", error.what());
-        return 1;
-    }
-    return 0;
+        return true;
+    });
 }
