@@ -9,7 +9,7 @@ cd "$root"
 scripts/setup.sh
 scripts/format.sh --check
 scripts/build.sh mpi # runs serially, too
-ctest --preset mpi -j "$(nproc)"
+ctest --preset mpi -j "$(($(nproc) + 1))" # those of the job scripts mostly wait
 scripts/build.sh asan sanitized_tests
 ctest --preset asan -j "$(nproc)"
 scripts/build.sh tsan threaded_tests
