@@ -1,8 +1,6 @@
 // Primitives of takes and their annotated labels, as `kinetome reindex` and `label` see them.
 #pragma once
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,6 +16,7 @@
 #include "kinetome/stages/stored_labels.h"
 #include "kinetome/synthesis/corpus_generator.h"
 #include "takes.h"
+#include "temporary_folder.h"
 
 namespace kinetome::bench {
 
@@ -109,28 +108,6 @@ inline Labelled with_labels(Primitives primitives, const std::vector<CycleRow>& 
     return result;
 }
 
-/// Removed with all that is in it.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string pattern =
-            (std::filesystem::temp_directory_path() / "label_transfer_bench.XXXXXX").string();
-        if (!mkdtemp(pattern.data())) throw CreateError("cannot make the folder " + pattern);
-        path_ = pattern;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
-
 inline std::vector<NamedTake> read_all(const std::filesystem::path& folder, int threads) {
     std::vector<std::filesystem::path> files = amc_files(folder);
     std::ranges::sort(files);
@@ -144,7 +121,7 @@ inline std::vector<NamedTake> read_all(const std::filesystem::path& folder, int 
 /// The primitives of a generated corpus, labelled by its cycles.
 inline Labelled generated_primitives(const GenerateOptions& options, int threads) {
     const TemporaryFolder folder;
-    const std::filesystem::path corpus = folder.path() / "corpus", cycles = corpus / "cycles.csv";
+    const std::filesystem::path corpus = folder / "corpus", cycles = corpus / "cycles.csv";
     generate_corpus(options, corpus, threads);
     return with_labels(find_in(read_all(corpus, threads), threads),
                        parse_cycles_csv(read_source_file(cycles), cycles.string()));

@@ -7,7 +7,6 @@
 //       --turns    of each measurement, of which the least counts (default: 3)
 //       --threads  that are "all" (default: what was granted)
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <chrono>
@@ -39,6 +38,7 @@
 #include "kinetome/store/neighbor_store.h"
 #include "kinetome/synthesis/corpus_generator.h"
 #include "program.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -52,25 +52,6 @@ struct Options {
     int64_t frames = 200'000;
     int turns = 3;
     std::optional<int> threads;
-};
-
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "kinetome-rates-XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw std::runtime_error("cannot create " + name);
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    fs::path operator/(const std::string& name) const { return path_ / name; }
-
-  private:
-    fs::path path_;
 };
 
 /// What else the machine does only ever adds: the least of several turns is nearest to the work.
@@ -282,7 +263,7 @@ enum StageNumber : size_t {
 
 Rates measure(const Options& options) {
     const Resources resources = granted_resources(options.threads, std::nullopt);
-    const TemporaryFolder folder;
+    const bench::TemporaryFolder folder;
     generate_corpus({.frames = options.frames}, folder / "takes", resources.threads);
     generate_corpus({.frames = 100, .subjects = 1}, folder / "take", resources.threads);
 

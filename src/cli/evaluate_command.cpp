@@ -19,6 +19,7 @@
 #include "kinetome/stages/primitive_evaluation.h"
 #include "kinetome/stages/stored_bundles.h"
 #include "kinetome/stages/stored_evaluation.h"
+#include "write_text.h"
 
 namespace kinetome::cli {
 namespace {
@@ -252,12 +253,7 @@ Command evaluate_command() {
                     check(*flags);
                     const std::string text =
                         report_on(*flags, EvaluationInput(*flags), invocation.resources().threads);
-                    if (!flags->output.empty()) {
-                        write_file_atomically(flags->output, text);
-                    } else {
-                        // main flushes and checks
-                        std::fwrite(text.data(), 1, text.size(), stdout);
-                    }
+                    write_text(flags->output, text);
                     return ExitCode::success;
                 };
             }};

@@ -3,13 +3,13 @@
 #include <cstdio>
 
 #include "command.h"
-#include "kinetome/base/file.h"
 #include "kinetome/report/timeline_svg.h"
 #include "kinetome/stages/export.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_walk.h"
 #include "kinetome/stages/stored_bundles.h"
 #include "kinetome/stages/stored_timeline.h"
+#include "write_text.h"
 
 namespace kinetome::cli {
 namespace {
@@ -79,12 +79,7 @@ Command export_command() {
                            "id, the beginning of one, or current");
             return [=](const Invocation&) {
                 const std::string text = exported(*flags);
-                if (!flags->output.empty()) {
-                    write_file_atomically(flags->output, text);
-                } else {
-                    std::fwrite(text.data(), 1, text.size(),
-                                stdout);  // main flushes and checks
-                }
+                write_text(flags->output, text);
                 return ExitCode::success;
             };
         }};

@@ -9,6 +9,7 @@
 #include "kinetome/base/file.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/stored_labels.h"
+#include "write_text.h"
 
 namespace kinetome::cli {
 namespace {
@@ -85,11 +86,7 @@ Command label_command() {
                     const TableFormat format = parse_table_format(flags->format);
                     const std::string text =
                         write_table(make_table(*flags, invocation.resources().threads), format);
-                    if (!flags->output.empty()) {
-                        write_file_atomically(flags->output, text);
-                    } else {
-                        std::fwrite(text.data(), 1, text.size(), stdout);
-                    }
+                    write_text(flags->output, text);
                     return ExitCode::success;
                 };
             }};

@@ -5,9 +5,9 @@
 
 #include "command.h"
 #include "frame_range.h"
-#include "kinetome/base/file.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/signature_query.h"
+#include "write_text.h"
 
 namespace kinetome::cli {
 namespace {
@@ -41,11 +41,7 @@ ExitCode answer(const QueryFlags& flags, const Invocation& invocation) {
     const OpenStore open(flags.store, flags.generation);
     const std::string text =
         write_table(query_table(open.generation, query, invocation.resources().threads), format);
-    if (!flags.output.empty()) {
-        write_file_atomically(flags.output, text);
-    } else {
-        std::fwrite(text.data(), 1, text.size(), stdout);
-    }
+    write_text(flags.output, text);
     return ExitCode::success;
 }
 

@@ -11,6 +11,7 @@
 #include "kinetome/base/error.h"
 #include "kinetome/formats/resample.h"
 #include "kinetome/stages/bundle_file.h"
+#include "kinetome/stages/motion_string_file.h"
 #include "kinetome/stages/pose_hierarchy_file.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/stages/signature_query.h"
@@ -116,11 +117,8 @@ Table clip_table(const Generation& generation) {
 Table letter_table(const Generation& generation) {
     Table table{{"clip", "first", "end", "letter"}, {}};
     const ArtifactReader file = generation.open("motion_strings.h5");
-    const std::string suffix = "/letters/letter";
-    for (const DatasetSpec& spec : file.datasets()) {
-        if (!spec.path.ends_with(suffix)) continue;
-        append_letters(file, spec.path.substr(0, spec.path.size() - suffix.size()), table);
-    }
+    for (const std::string& partition : spelled_partitions(file))
+        append_letters(file, partition, table);
     std::stable_sort(table.rows.begin(), table.rows.end(), [](const auto& a, const auto& b) {
         return std::get<std::string>(a[0]) < std::get<std::string>(b[0]);
     });

@@ -3,17 +3,12 @@
 #include <map>
 
 #include "kinetome/store/catalog.h"
+#include "kinetome/store/groups.h"
 
 namespace kinetome {
 
 std::vector<std::string> spelled_partitions(const ArtifactReader& file) {
-    constexpr std::string_view suffix = "/letters/letter";
-    std::vector<std::string> partitions;
-    for (const DatasetSpec& spec : file.datasets()) {
-        if (spec.path.ends_with(suffix))
-            partitions.push_back(spec.path.substr(0, spec.path.size() - suffix.size()));
-    }
-    return partitions;
+    return groups_with(file, "/letters/letter");
 }
 
 StoredMotionString read_motion_string(const ArtifactReader& file, const std::string& partition) {

@@ -10,6 +10,7 @@
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/resample.h"
 #include "kinetome/store/catalog.h"
+#include "kinetome/store/groups.h"
 
 namespace kinetome {
 namespace {
@@ -178,13 +179,7 @@ ClassSignatures read_signatures(const ArtifactReader& file, const std::string& g
 }
 
 std::vector<std::string> signature_classes(const ArtifactReader& file) {
-    std::vector<std::string> groups;
-    for (const DatasetSpec& spec : file.datasets()) {
-        if (spec.path.ends_with(rate_path)) {
-            groups.push_back(spec.path.substr(0, spec.path.size() - rate_path.size()));
-        }
-    }
-    return groups;
+    return groups_with(file, rate_path);
 }
 
 }  // namespace kinetome

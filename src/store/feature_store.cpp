@@ -1,22 +1,10 @@
 #include "kinetome/store/feature_store.h"
 
+#include "class_datasets.h"
 #include "kinetome/store/catalog.h"
+#include "kinetome/store/groups.h"
 
 namespace kinetome {
-namespace {
-
-const std::string clip_names = "/clips/name";
-
-std::string at(const std::string& clip_class, const std::string& what) {
-    return "/" + clip_class + "/" + what;
-}
-
-template <class T>
-std::span<const T> one(const T& value) {
-    return {&value, 1};
-}
-
-}  // namespace
 
 FeatureShardWriter::FeatureShardWriter(const std::filesystem::path& path,
                                        const ArtifactHeader& header, const WriteOptions& options)
@@ -91,10 +79,9 @@ ArtifactRecord FeatureShardWriter::close() {
 }
 
 FeatureShardReader::FeatureShardReader(ArtifactReader file) : file_(std::move(file)) {
-    for (const DatasetSpec& spec : file_.datasets()) {
-        if (!spec.path.ends_with(clip_names)) continue;
-        const std::string name = spec.path.substr(1, spec.path.size() - 1 - clip_names.size());
-        const auto names = file_.read_texts(spec.path);
+    for (const std::string& group : groups_with(file_, "/clips/name")) {
+        const std::string name = group.substr(1);
+        const auto names = file_.read_texts(at(name, "clips/name"));
         const auto source_frames = file_.read<int64_t>(at(name, "clips/source_frames"));
         const auto source_rate = file_.read<double>(at(name, "clips/source_rate"));
         const auto pose_rows = file_.read<int64_t>(at(name, "clips/pose_rows"));

@@ -7,6 +7,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/store/catalog.h"
+#include "kinetome/store/groups.h"
 
 namespace kinetome {
 namespace {
@@ -165,12 +166,10 @@ ArtifactRecord FrameShardWriter::close() {
 }
 
 FrameShardReader::FrameShardReader(ArtifactReader file) : file_(std::move(file)) {
-    const std::string suffix = "/clips/name";
-    for (const DatasetSpec& spec : file_.datasets()) {
-        if (!spec.path.ends_with(suffix)) continue;
-        const std::string clip_class = spec.path.substr(1, spec.path.size() - 1 - suffix.size());
+    for (const std::string& group : groups_with(file_, "/clips/name")) {
+        const std::string clip_class = group.substr(1);
         const Paths at(clip_class);
-        const auto names = file_.read_texts(spec.path);
+        const auto names = file_.read_texts(at.clip("name"));
         const auto frames = file_.read<int64_t>(at.clip("frames"));
         const auto rates = file_.read<double>(at.clip("rate"));
         int64_t row = 0;
