@@ -16,10 +16,9 @@
 
 #include "cost.h"
 #include "generated_corpus.h"
-#include "kinetome/features/grounded_points.h"
+#include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/models/bundle_links.h"
 #include "kinetome/models/motion_bundle.h"
-#include "kinetome/models/retarget.h"
 #include "spelled_takes.h"
 
 namespace {
@@ -73,10 +72,7 @@ void add_subject(const bench::GeneratedCorpus& corpus, size_t begin, size_t end,
     const bench::SpelledTakes takes(bench::PoseTakes::of_clips(names, clips), {}, threads);
     const MotionString& string = takes.string;
     for (const Clip& clip : clips) {
-        const Clip slow = resample(clip, bundle_link_rate);
-        const MatrixF points = grounded_points(*slow.skeleton, slow.motion, joint_positions(slow),
-                                               bundle_link_offset) /
-                               static_cast<float>(leg_length(*slow.skeleton));
+        const MatrixF points = bundle_link_rows(clip);
         const int64_t first = all.rows.rows();
         all.rows.conservativeResize(first + points.rows(), points.cols());
         all.rows.bottomRows(points.rows()) = points;

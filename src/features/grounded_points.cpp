@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "clip_rows.h"
-#include "kinetome/features/effectors.h"
 #include "kinetome/features/placement.h"
 
 namespace kinetome {
 
 MatrixF grounded_points(const Skeleton& skeleton, const MatrixFView& motion,
-                        const MatrixFView& positions, int64_t offset) {
+                        const MatrixFView& positions, std::span<const JointRole> roles,
+                        int64_t offset) {
     require_positions_of(skeleton, motion, positions);
     if (offset < 0) throw std::invalid_argument("points are taken at an offset of 0 or more");
     const RootChain chain(skeleton);
     std::vector<int> joints{chain.root()};
-    for (const JointRole role : effector_roles) joints.push_back(require_role(skeleton, role));
+    for (const JointRole role : roles) joints.push_back(require_role(skeleton, role));
 
     const Eigen::Index frames = motion.rows();
     MatrixF points(frames, static_cast<Eigen::Index>(9 * joints.size()));

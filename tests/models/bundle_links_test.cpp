@@ -15,7 +15,7 @@ using namespace kinetome;
 
 namespace {
 
-constexpr int64_t cycle = 40;  // rows
+constexpr int64_t cycle = 20;  // rows
 constexpr int64_t clip_rows = 4 * cycle;
 
 /// Which of three columns moves, and how: what two performers have in common.
@@ -63,8 +63,10 @@ struct Performances {
     }
 };
 
-std::set<std::pair<int32_t, int32_t>> pairs_of(const BundleLinks& links) {
-    std::set<std::pair<int32_t, int32_t>> pairs;
+using Pairs = std::set<std::pair<int32_t, int32_t>>;
+
+Pairs pairs_of(const BundleLinks& links) {
+    Pairs pairs;
     for (const BundleLink& link : links.links) pairs.emplace(link.first, link.second);
     return pairs;
 }
@@ -74,13 +76,8 @@ std::set<std::pair<int32_t, int32_t>> pairs_of(const BundleLinks& links) {
 TEST_CASE("bundles of a cycle that two bodies cut at different phases are linked") {
     Performances performances;
     performances.add(0, {.column = 0}, 0, 0);
-    performances.add(1, {.column = 0}, 0.01, 8);
-    const BundleLinks links = performances.link();
-    REQUIRE(pairs_of(links) == std::set<std::pair<int32_t, int32_t>>{{0, 1}});
-    const BundleLink& link = links.links.front();
-    CHECK(link.first_row % cycle == Approx(link.second_row % cycle).margin(2));
-    CHECK(performances.subject_of[static_cast<size_t>(link.first_clip)] == 0);
-    CHECK(performances.subject_of[static_cast<size_t>(link.second_clip)] == 1);
+    performances.add(1, {.column = 0}, 0.01, 4);
+    CHECK(pairs_of(performances.link()) == Pairs{{0, 1}});
 }
 
 TEST_CASE("bundles of opposite phases of a cycle are not linked") {
@@ -94,11 +91,34 @@ TEST_CASE("movements of different limbs are not linked, however near they are") 
     // As a left and a right punch: within reach of each other, but for what they move.
     for (const int other : {0, 1}) {
         Performances performances;
-        performances.add(0, {.column = 0, .extent = 0.06}, 0, 0);
-        performances.add(1, {.column = other, .extent = 0.06}, 0, 0);
-        CHECK(performances.link(1, {.unlike = 10}).links.size() == 1);
-        CHECK(performances.link().links.size() == (other == 0 ? 1 : 0));
+        performances.add(0, {.column = 0, .extent = 0.2}, 0, 0);
+        performances.add(1, {.column = other, .extent = 0.2}, 0, 0);
+        CHECK(performances.link(1, {.reach = 10, .unlike = 10}).links.size() == 1);
+        CHECK(performances.link(1, {.reach = 10}).links.size() == (other == 0 ? 1 : 0));
     }
+}
+
+TEST_CASE("a bundle is linked with the nearest of another body") {
+    Performances performances;
+    performances.add(0, {.extent = 1}, 0, 0);
+    performances.add(1, {.extent = 1.1}, 0, 0);
+    performances.add(1, {.extent = 1.02}, 0, 0);
+    // The farther one has none nearer.
+    CHECK(pairs_of(performances.link(1, {.reach = 10, .own_reach = 10})) == Pairs{{0, 1}, {0, 2}});
+    CHECK(performances.link(1, {.reach = 10, .own_reach = 10}).kind_of ==
+          std::vector<int32_t>{0, 1, 1});
+}
+
+TEST_CASE("a bundle is not linked with what another kind of motion of its body resembles more") {
+    Performances performances;
+    performances.add(0, {.extent = 1}, 0, 0);
+    performances.add(0, {.extent = 1.3}, 0, 0);
+    performances.add(1, {.extent = 1.32}, 0, 0);
+    const BundleLinks links = performances.link(1, {.reach = 10, .own_reach = 1.5});
+    CHECK(links.kind_of == std::vector<int32_t>{0, 1, 2});
+    CHECK(pairs_of(links) == Pairs{{1, 2}});
+    // Both are one kind of motion when they are like enough.
+    CHECK(pairs_of(performances.link(1, {.reach = 10, .own_reach = 10})) == Pairs{{0, 2}, {1, 2}});
 }
 
 TEST_CASE("movements in postures far apart are not linked") {
@@ -114,6 +134,7 @@ TEST_CASE("bundles of one body are not linked with each other") {
     performances.add(0, {.column = 0}, 0, 0);
     const BundleLinks links = performances.link();
     CHECK(links.usual_cost > 0);
+    CHECK(links.kind_of == std::vector<int32_t>{0, 0});
     CHECK(links.links.empty());
 }
 
