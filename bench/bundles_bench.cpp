@@ -1,7 +1,7 @@
 // How pure, wide and tall are motion bundles, and how fast are they found?
 //
 //   bundles_bench CORPUS TRUTH [--set takes|subjects|corpus|known] [--starts N] [--spread S]
-//       [--threads N] [--curve]
+//       [--tau-quantile Q] [--step-quantile Q] [--threads N] [--curve]
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
@@ -27,10 +27,16 @@ namespace {
 
 using namespace kinetome;
 using bench::add_noise;
-using bench::find;
 using bench::Found;
 using bench::score;
 namespace fs = std::filesystem;
+
+/// What bundles are sought by.
+struct Setting {
+    MotionBundleOptions bundles;
+    double tau_quantile = MotionStringOptions{}.tau_quantile;
+    double tau_factor = 1;
+};
 
 struct Options {
     fs::path corpus, truth;
@@ -38,7 +44,13 @@ struct Options {
     int threads = 2;
     std::string spread;
     bool curve = false;
+    Setting setting;  ///< where nothing else is tried
 };
+
+Found find(const bench::SpelledTakes& takes, const Setting& setting, int threads) {
+    const double tau = adjacent_distance(takes.string, takes.mixture, setting.tau_quantile);
+    return bench::find(takes, setting.bundles, threads, tau * setting.tau_factor);
+}
 
 using LabelsOfTakes = std::map<std::string, std::vector<TruthRow>>;
 
@@ -79,16 +91,19 @@ std::string name_of(const std::vector<std::string>& takes) {
     return name;
 }
 
+struct LabelledSet {
+    std::vector<FrameClasses> classes;
+    std::vector<bench::SpelledTakes> starts;  ///< of EM
+};
+
 /// Mean and worst over starts of EM.
-void judge(const Options& options, const MotionBundleOptions& bundles, double tau_factor,
-           const std::vector<std::vector<bench::SpelledTakes>>& starts_of_sets,
-           const std::vector<std::vector<FrameClasses>>& classes_of_sets) {
+void judge(const std::vector<LabelledSet>& sets, const Setting& setting) {
     for (size_t set = 0; set < labelled_sets.size(); ++set) {
         double purity = 0, worst = 1, coverage = 0, height = 0, shuffled = 0, least_coverage = 1;
         std::vector<double> widths, seconds;
-        for (const auto& takes : starts_of_sets[set]) {
-            const Found found = find(takes, bundles, 1, tau_factor);
-            const BundleScore one = score(takes.string, found.bundles, classes_of_sets[set]);
+        for (const auto& takes : sets[set].starts) {
+            const Found found = find(takes, setting, 1);
+            const BundleScore one = score(takes.string, found.bundles, sets[set].classes);
             purity += one.purity;
             worst = std::min(worst, one.purity);
             coverage += one.coverage;
@@ -98,51 +113,61 @@ void judge(const Options& options, const MotionBundleOptions& bundles, double ta
             widths.push_back(one.median_width);
             seconds.push_back(found.seconds);
         }
-        const double n = options.starts;
+        const auto n = static_cast<double>(sets[set].starts.size());
         fmt::print(
-            "{:<14} {:<14} {:>4.2f} {:>4.2f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.1f} "
-            "{:>6.0f} {:>6.2f} {:>6.1f}\n",
-            name_of(labelled_sets[set]), spread_text(bundles), tau_factor, bundles.gamma,
-            purity / n, worst, coverage / n, least_coverage, height / n, bench::median(widths),
-            shuffled / n, 1e3 * bench::median(seconds));
+            "{:<14} {:<14} {:>4.2f} {:>5.2f} {:>4.2f} {:>5.2f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} "
+            "{:>6.2f} {:>6.0f} {:>6.2f} {:>6.1f}\n",
+            name_of(labelled_sets[set]), spread_text(setting.bundles), setting.tau_quantile,
+            setting.tau_factor, setting.bundles.step_quantile, setting.bundles.gamma, purity / n,
+            worst, coverage / n, least_coverage, height / n, bench::median(widths), shuffled / n,
+            1e3 * bench::median(seconds));
     }
+}
+
+/// Each of what bundles are sought by, the others at their defaults.
+std::vector<Setting> curve() {
+    std::vector<Setting> settings;
+    for (const char* spread : {"closure", "closure-near", "closure-length", "depth:1", "depth:2",
+                               "depth:3", "depth:4"}) {
+        parse_spread(spread, settings.emplace_back().bundles);
+    }
+    for (const double quantile : {0.5, 0.6, 0.7, 0.8, 0.9})
+        settings.emplace_back().tau_quantile = quantile;
+    for (const double factor : {0.7, 0.85, 1.15, 1.3, 1.6})
+        settings.emplace_back().tau_factor = factor;
+    for (const double quantile : {0.5, 0.6, 0.9, 1.})
+        settings.emplace_back().bundles.step_quantile = quantile;
+    for (const double gamma : {0., 0.5, 0.65, 0.9}) settings.emplace_back().bundles.gamma = gamma;
+    // As S1 has it, but for how far the relation is spread.
+    for (const char* spread : {"closure", "closure-near", "closure-length", "depth:1", "depth:2"}) {
+        Setting& setting = settings.emplace_back();
+        parse_spread(spread, setting.bundles);
+        setting.bundles.step_quantile = 1;
+        setting.tau_quantile = 0.5;
+    }
+    return settings;
 }
 
 void judge_labelled_takes(const Options& options) {
     const LabelsOfTakes labels = read_labels(options.truth);
-    std::vector<std::vector<bench::SpelledTakes>> starts_of_sets;
-    std::vector<std::vector<FrameClasses>> classes_of_sets;
+    std::vector<LabelledSet> sets;
     for (const auto& names : labelled_sets) {
         const auto takes = bench::PoseTakes::read(options.corpus, names);
-        classes_of_sets.push_back(classes_of(takes, labels));
-        auto& starts = starts_of_sets.emplace_back();
+        LabelledSet& set = sets.emplace_back();
+        set.classes = classes_of(takes, labels);
         for (int start = 0; start < options.starts; ++start) {
             PoseClusterOptions clusters;
             clusters.mixture.seed = static_cast<uint64_t>(start + 1);
-            starts.emplace_back(takes, clusters, options.threads);
+            set.starts.emplace_back(takes, clusters, options.threads);
         }
     }
+    fmt::print("tau: quantile of adjacent distances, times a factor; step: step_quantile\n");
     fmt::print(
-        "takes          spread          tau gamma purity worst  cover. least  height  width "
-        "control   ms\n");
-    MotionBundleOptions bundles;
-    if (!options.spread.empty()) parse_spread(options.spread, bundles);
-    judge(options, bundles, 1, starts_of_sets, classes_of_sets);
+        "takes          spread          tau times step gamma purity worst  cover. least  height  "
+        "width control   ms\n");
+    judge(sets, options.setting);
     if (!options.curve) return;
-    for (const char* spread : {"closure", "closure-near", "closure-length", "depth:1", "depth:2",
-                               "depth:3", "depth:4"}) {
-        parse_spread(spread, bundles);
-        judge(options, bundles, 1, starts_of_sets, classes_of_sets);
-    }
-    const MotionBundleOptions standard;
-    for (const double tau_factor : {0.7, 0.85, 1.15, 1.3, 1.6}) {
-        judge(options, standard, tau_factor, starts_of_sets, classes_of_sets);
-    }
-    for (const double gamma : {0.0, 0.5, 0.65, 0.9}) {
-        bundles = standard;
-        bundles.gamma = gamma;
-        judge(options, bundles, 1, starts_of_sets, classes_of_sets);
-    }
+    for (const Setting& one : curve()) judge(sets, one);
 }
 
 /// Bundles as "height x mean frames", those with most frames first.
@@ -206,13 +231,12 @@ void describe_known_takes(const Options& options) {
         PoseClusterOptions clusters;
         clusters.clusters = set.clusters;
         const bench::SpelledTakes spelled(takes, clusters, options.threads);
-        MotionBundleOptions bundles;
-        if (!options.spread.empty()) parse_spread(options.spread, bundles);
-        bundles.rho = set.rho;
+        Setting setting = options.setting;
+        setting.bundles.rho = set.rho;
         std::vector<double> seconds;
         Found found;
         for (int turn = 0; turn < 9; ++turn) {
-            found = find(spelled, bundles, 1);
+            found = find(spelled, setting, 1);
             seconds.push_back(found.seconds);
         }
         // Each take is a class of its own: a bundle is mixed if it is not pure.
@@ -269,18 +293,18 @@ void judge_corpus(const Options& options, bool by_subject) {
     }
     fmt::print("{} frames, {} letters, letters shared by {}\n", frames, letters,
                by_subject ? "subject" : "all");
-    fmt::print("spread          tau purity  cover. control  bundles height  seconds\n");
+    fmt::print("spread         purity cover. control   bundles height  seconds\n");
     std::vector<std::string> spreads = {"depth:1",      "depth:2",        "depth:3",
                                         "closure-near", "closure-length", "closure"};
     if (!options.spread.empty()) spreads = {options.spread};
     for (const std::string& spread : spreads) {
-        MotionBundleOptions bundles;
-        parse_spread(spread, bundles);
+        Setting setting = options.setting;
+        parse_spread(spread, setting.bundles);
         double seconds = 0;
         int64_t count = 0;
         double pure = 0, covered = 0, labelled = 0, height = 0, shuffled = 0;
         for (const auto& [takes, classes] : spelled) {
-            const Found found = find(takes, bundles, options.threads);
+            const Found found = find(takes, setting, options.threads);
             seconds += found.seconds;
             const BundleScore one = score(takes.string, found.bundles, classes);
             double frames_here = 0;
@@ -292,8 +316,8 @@ void judge_corpus(const Options& options, bool by_subject) {
             count += one.bundles;
             height += one.mean_height * double(one.bundles);
         }
-        fmt::print("{:<14} {:>4.2f} {:>6.3f} {:>6.2f} {:>6.2f} {:>9} {:>6.2f} {:>8.3f}\n", spread,
-                   1.0, pure / covered, covered / labelled, shuffled / covered, count,
+        fmt::print("{:<14} {:>6.3f} {:>6.3f} {:>7.3f} {:>9} {:>6.2f} {:>8.3f}\n", spread,
+                   pure / covered, covered / labelled, shuffled / covered, count,
                    height / double(count), seconds);
         std::fflush(stdout);
     }
@@ -312,8 +336,11 @@ int main(int argc, char** argv) {
         app.add_option("--starts", options.starts);
         app.add_option("--threads", options.threads);
         app.add_option("--spread", options.spread);
+        app.add_option("--tau-quantile", options.setting.tau_quantile);
+        app.add_option("--step-quantile", options.setting.bundles.step_quantile);
         app.add_flag("--curve", options.curve);
         CLI11_PARSE(app, argc, argv);
+        if (!options.spread.empty()) parse_spread(options.spread, options.setting.bundles);
         constexpr std::array sets = {"takes", "subjects", "corpus", "known"};
         if (std::find(sets.begin(), sets.end(), set) == sets.end())
             throw UsageError("--set " + set + ": expected takes, subjects, corpus or known");

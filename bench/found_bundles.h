@@ -18,18 +18,20 @@ struct Found {
 };
 
 inline Found find(const SpelledTakes& takes, const MotionBundleOptions& options, int threads,
-                  double tau_factor = 1) {
-    AccessibilityMatrix accessible = accessibility(takes.mixture, tau_factor * takes.tau, threads);
-    if (options.spread == BundleSpread::closure_near) {
-        accessible = within_step(accessible, takes.mixture,
-                                 median_adjacent_step(takes.string, takes.mixture));
-    }
+                  double tau) {
+    const AccessibilityMatrix accessible = accessibility_for_bundles(
+        accessibility(takes.mixture, tau, threads), takes.string, takes.mixture, options);
     Found found;
     found.seconds = cost_of([&] {
                         found.bundles = find_motion_bundles(takes.string, accessible, takes.lambda,
                                                             options, {.threads = threads});
                     }).wall;
     return found;
+}
+
+/// At the string's own τ.
+inline Found find(const SpelledTakes& takes, const MotionBundleOptions& options, int threads) {
+    return find(takes, options, threads, takes.tau);
 }
 
 inline BundleScore score(const MotionString& string, const std::vector<SubstringBundle>& bundles,

@@ -64,15 +64,15 @@ struct SpelledTakes {
     int64_t lambda = 0;
 
     SpelledTakes(const PoseTakes& takes, const PoseClusterOptions& options, int threads,
-                 double longest_submotion = 200) {
+                 const MotionStringOptions& spelling = {}) {
         const Workers workers{threads, nullptr};
         const Pca pca = fit_pca(moments_of(takes.poses), takes.floors, options.variance_share);
         projected = pca.project(takes.poses);
         const MatrixRows rows(projected);
         mixture = fit_pose_clusters(rows, options, workers).fit.model;
         string = make_motion_string(likeliest_clusters(mixture, rows, workers), takes.frames);
-        tau = median_adjacent_distance(string, mixture);
-        lambda = longest_substring(string, longest_submotion);
+        tau = adjacent_distance(string, mixture, spelling.tau_quantile);
+        lambda = longest_substring(string, spelling.longest_submotion * pose_rate);
     }
 };
 

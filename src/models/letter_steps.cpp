@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kinetome/models/motion_bundle.h"
+#include "lower_quantile.h"
 
 namespace kinetome {
 namespace {
@@ -13,17 +14,14 @@ double squared_step(const Mixture& mixture, int32_t a, int32_t b) {
 
 }  // namespace
 
-double median_adjacent_step(const MotionString& string, const Mixture& mixture) {
+double adjacent_step(const MotionString& string, const Mixture& mixture, double quantile) {
     std::vector<double> squared;
     for (int64_t j = 0; j + 1 < string.size(); ++j) {
         const auto i = static_cast<size_t>(j);
         if (!string.breaks_after(j))
             squared.push_back(squared_step(mixture, string.letters[i], string.letters[i + 1]));
     }
-    if (squared.empty()) return 0;
-    const auto middle = squared.begin() + static_cast<std::ptrdiff_t>((squared.size() - 1) / 2);
-    std::nth_element(squared.begin(), middle, squared.end());
-    return std::sqrt(*middle);
+    return std::sqrt(lower_quantile(std::move(squared), quantile));
 }
 
 AccessibilityMatrix within_step(const AccessibilityMatrix& accessibility, const Mixture& mixture,
@@ -40,6 +38,17 @@ AccessibilityMatrix within_step(const AccessibilityMatrix& accessibility, const 
         }
     }
     return near;
+}
+
+AccessibilityMatrix accessibility_for_bundles(const AccessibilityMatrix& accessibility,
+                                              const MotionString& string, const Mixture& mixture,
+                                              const MotionBundleOptions& options) {
+    constexpr double median = 0.5;
+    const double quantile = options.spread == BundleSpread::closure_near
+                                ? std::min(median, options.step_quantile)
+                                : options.step_quantile;
+    if (quantile >= 1) return accessibility;
+    return within_step(accessibility, mixture, adjacent_step(string, mixture, quantile));
 }
 
 }  // namespace kinetome

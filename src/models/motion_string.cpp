@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kinetome/models/pose_clusters.h"
+#include "lower_quantile.h"
 
 namespace kinetome {
 
@@ -56,17 +57,14 @@ MotionString make_motion_string(std::span<const int32_t> frame_letters,
     return string;
 }
 
-double median_adjacent_distance(const MotionString& string, const Mixture& mixture) {
+double adjacent_distance(const MotionString& string, const Mixture& mixture, double quantile) {
     std::vector<double> distances;
     for (int64_t j = 0; j + 1 < string.size(); ++j) {
         const auto i = static_cast<size_t>(j);
         if (!string.breaks_after(j))
             distances.push_back(letter_distance(mixture, string.letters[i], string.letters[i + 1]));
     }
-    if (distances.empty()) return 0;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
+    return lower_quantile(std::move(distances), quantile);
 }
 
 int64_t longest_substring(const MotionString& string, double longest_submotion_frames) {

@@ -47,6 +47,8 @@ void check_options(const ReindexOptions& o) {
     require(m.variance_floor > 0, "variance-floor must be above 0");
     require(o.motion_strings.longest_submotion > 0, "longest-submotion must be above 0");
     require(o.motion_strings.tau >= 0, "tau must not be negative");
+    require(o.motion_strings.tau_quantile > 0 && o.motion_strings.tau_quantile <= 1,
+            "tau-quantile must be in (0, 1]");
     require(o.principal_markers.tolerance > 0 && o.principal_markers.starts > 0,
             "principal-tolerance and principal-starts must be above 0");
     require(o.pose_hierarchy.dimension > 0 && o.pose_hierarchy.leaf_tolerance > 0,
@@ -55,6 +57,8 @@ void check_options(const ReindexOptions& o) {
             "leaf-overlap and parent-weight must not be negative");
     require(o.bundles.rho > 0, "rho must be above 0");
     require(o.bundles.gamma >= 0 && o.bundles.gamma <= 1, "gamma must be in [0, 1]");
+    require(o.bundles.step_quantile > 0 && o.bundles.step_quantile <= 1,
+            "step-quantile must be in (0, 1]");
     require(o.bundle_ends.sweeps >= 0, "bundle-sweeps must not be negative");
     require(o.bundles.seed <= std::numeric_limits<int64_t>::max(),
             fmt::format("bundle-seed must be at most {}", std::numeric_limits<int64_t>::max()));

@@ -37,7 +37,7 @@ void unpack(Unpacker& in, PartitionString& spelled) {
 /// Of a partition that all ranks work on, rank 0 has the result.
 PartitionString spell(const StageContext& context, const PosePartition& partition,
                       const StoredPoseClusters& model, const Workers& workers) {
-    const StringOptions& options = context.options.motion_strings;
+    const MotionStringOptions& options = context.options.motion_strings;
     const KeptRows rows = projected_rows(partition, model.pca, workers, 0, context.stop);
     const std::vector<int32_t> letters = likeliest_clusters(model.mixture, rows, workers);
     PartitionString result;
@@ -45,8 +45,9 @@ PartitionString spell(const StageContext& context, const PosePartition& partitio
     std::vector<int64_t> frames;
     for (const PartitionClip& clip : partition.clips) frames.push_back(clip.place.pose_rows);
     result.string = make_motion_string(letters, frames);
-    result.tau =
-        options.tau > 0 ? options.tau : median_adjacent_distance(result.string, model.mixture);
+    result.tau = options.tau > 0
+                     ? options.tau
+                     : adjacent_distance(result.string, model.mixture, options.tau_quantile);
     result.accessibility = accessibility(model.mixture, result.tau, workers.threads);
     result.lambda = longest_substring(
         result.string, options.longest_submotion * context.options.features.pose_rate);

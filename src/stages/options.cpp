@@ -81,7 +81,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
         number("longest-submotion", "motion_strings", o.motion_strings.longest_submotion,
                "longest submotion λ′, seconds"),
         number("tau", "motion_strings", o.motion_strings.tau,
-               "distance below which letters are equal; 0: the median adjacent distance"),
+               "distance below which letters are equal; 0: by tau-quantile"),
+        number("tau-quantile", "motion_strings", o.motion_strings.tau_quantile,
+               "tau is the distance that this share of adjacent letters is within"),
         number("principal-tolerance", "pose_hierarchy", o.principal_markers.tolerance,
                "mm per marker that the components which principal markers stand for may leave "
                "unexplained"),
@@ -104,6 +106,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
         number("gamma", "bundles", o.bundles.gamma,
                "least ratio between the length of a member and its bundle's mean; 0: any"),
         spread_option("spread", "bundles", o.bundles),
+        number("step-quantile", "bundles", o.bundles.step_quantile,
+               "letters that differ by more than this share of adjacent ones are not matched; "
+               "1: tau alone tells"),
         number("bundle-seed", "bundles", o.bundles.seed,
                "of the instances at which bundles are sought"),
         number("bundle-sweeps", "bundles", o.bundle_ends.sweeps,
@@ -156,6 +161,8 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
 ReindexOptions paper_options() {
     ReindexOptions options;
     options.partition.rule = PartitionRule::none;    // S1 clusters each database as a whole
+    options.motion_strings.tau_quantile = 0.5;       // S1 §3.6
+    options.bundles.step_quantile = 1;               // S1 Eq. 2
     options.bundles.spread = BundleSpread::closure;  // S1 Eq. 5
     options.pose_hierarchy.overlap = 0.1;            // S2 §4, fuzzy partition
     options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1

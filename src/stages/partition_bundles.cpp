@@ -39,12 +39,9 @@ PartitionBundles find_partition_bundles(const StoredMotionString& spelled, const
                                         const BundleEndOptions& ends,
                                         const BundleResources& resources, const PoseReader& poses) {
     const MotionString& string = spelled.string;
-    AccessibilityMatrix accessibility = spelled.accessibility;
-    if (options.spread == BundleSpread::closure_near) {
-        accessibility = within_step(accessibility, mixture, median_adjacent_step(string, mixture));
-    }
-    const auto bundles =
-        find_motion_bundles(string, accessibility, spelled.lambda, options, resources);
+    const auto bundles = find_motion_bundles(
+        string, accessibility_for_bundles(spelled.accessibility, string, mixture, options),
+        spelled.lambda, options, resources);
     const auto letters = bundle_end_letters(bundles);
     const BundleEnds found = find_bundle_ends(
         string, bundles, letters, poses_of(string, letters, mixture.dimension(), poses), ends);

@@ -49,7 +49,7 @@ struct Toy {
         const Mixture mixture = fit_pose_clusters(rows, options, Workers{2, nullptr}).fit.model;
         const std::vector<int64_t> clips(families * motions_per_family, frames_per_motion);
         string = make_motion_string(likeliest_clusters(mixture, rows, Workers{2, nullptr}), clips);
-        accessible = accessibility(mixture, median_adjacent_distance(string, mixture), 2);
+        accessible = accessibility(mixture, adjacent_distance(string, mixture, 0.5), 2);
         longest = longest_substring(string, 200);
     }
 

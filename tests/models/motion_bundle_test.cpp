@@ -144,13 +144,30 @@ TEST_CASE("letters of large variance are near only where their means are") {
     const Mixture mixture = mixture_on_line({0, 1, 10}, {1, 1, 1});
     const MotionString string =
         make_motion_string(std::vector<int32_t>{0, 1, 2, 1}, std::vector<int64_t>{4});
-    CHECK(median_adjacent_step(string, mixture) == 9);
+    CHECK(adjacent_step(string, mixture, 0.5) == 9);
     const AccessibilityMatrix all = accessibility(mixture, 100, 1);
     const AccessibilityMatrix near = within_step(all, mixture, 9);
     CHECK(all.count() == 9);
     CHECK((near(0, 1) && near(1, 0) && near(1, 2) && near(1, 1)));
     CHECK_FALSE(near(0, 2));
     CHECK(within_step(AccessibilityMatrix(3), mixture, 9) == AccessibilityMatrix(3));
+}
+
+TEST_CASE("what bundles are sought among is limited by the steps asked for, closure-near to half") {
+    // Steps of 1, 2, 4, 8: their quartiles.
+    const Mixture mixture = mixture_on_line({0, 1, 3, 7, 15}, {1, 1, 1, 1, 1});
+    const MotionString string =
+        make_motion_string(std::vector<int32_t>{0, 1, 2, 3, 4}, std::vector<int64_t>{5});
+    const AccessibilityMatrix all = accessibility(mixture, 100, 1);
+    const auto sought = [&](const MotionBundleOptions& options) {
+        return accessibility_for_bundles(all, string, mixture, options);
+    };
+    CHECK(sought({.step_quantile = 1}) == all);
+    CHECK(sought({.step_quantile = 0.7}) == within_step(all, mixture, 4));
+    CHECK(sought({.spread = BundleSpread::closure_near, .step_quantile = 1}) ==
+          within_step(all, mixture, 2));
+    CHECK(sought({.spread = BundleSpread::closure_near, .step_quantile = 0.1}) ==
+          within_step(all, mixture, 1));
 }
 
 TEST_CASE("options of no meaning are refused") {

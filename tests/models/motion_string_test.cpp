@@ -94,19 +94,25 @@ TEST_CASE("letters that do not match the clips are refused") {
     CHECK_THROWS_AS(make_motion_string(letters, frames), std::invalid_argument);
 }
 
-TEST_CASE(
-    "tau is the median over adjacent letters inside clips, the lower middle of an even number") {
+TEST_CASE("tau is a quantile over adjacent letters inside clips, the lower of two") {
     // Letters at 0, 1, 3, 10, 500 with deviation 1: adjacent distances are differences.
     const Mixture mixture = mixture_on_line({0, 1, 3, 10, 500}, {1, 1, 1, 1, 1});
-    CHECK(median_adjacent_distance(string_of("ABCD"), mixture) == Approx(2));    // 1 2 7
-    CHECK(median_adjacent_distance(string_of("DCBABA"), mixture) == Approx(1));  // 7 2 1 1 1
-    CHECK(median_adjacent_distance(string_of("BCD"), mixture) == Approx(2));     // 2 7
-    CHECK(median_adjacent_distance(string_of("ABDCDCBE"), mixture) ==
-          Approx(7));  // 1 9 7 7 7 2 499
-    // The breaks leap over 500.
-    CHECK(median_adjacent_distance(string_of("ABC E BC E D"), mixture) == Approx(2));
-    CHECK(median_adjacent_distance(string_of("A E A"), mixture) == 0);
-    CHECK(median_adjacent_distance(MotionString{}, mixture) == 0);
+    const auto median = [&](const char* letters) {
+        return adjacent_distance(string_of(letters), mixture, 0.5);
+    };
+    CHECK(median("ABCD") == Approx(2));          // 1 2 7
+    CHECK(median("DCBABA") == Approx(1));        // 7 2 1 1 1
+    CHECK(median("BCD") == Approx(2));           // 2 7
+    CHECK(median("ABDCDCBE") == Approx(7));      // 1 9 7 7 7 2 499
+    CHECK(median("ABC E BC E D") == Approx(2));  // the breaks leap over 500
+    CHECK(median("A E A") == 0);
+    CHECK(adjacent_distance(MotionString{}, mixture, 0.5) == 0);
+
+    const MotionString string = string_of("DCBABE");  // 7 2 1 1 499
+    CHECK(adjacent_distance(string, mixture, 0) == Approx(1));
+    CHECK(adjacent_distance(string, mixture, 0.74) == Approx(2));
+    CHECK(adjacent_distance(string, mixture, 0.75) == Approx(7));
+    CHECK(adjacent_distance(string, mixture, 1) == Approx(499));
 }
 
 TEST_CASE("lambda counts the letters of a submotion of lambda' frames") {

@@ -76,7 +76,7 @@ TEST_CASE("exercises of 14_14 at 200 clusters give a string of about 403 letters
     const auto lambda = static_cast<double>(longest_substring(string, 200));
     CHECK(lambda == Approx(17).epsilon(0.3));
     // The method's notes: tau is about 5 at 3 components, 9 at 8, and a row has 2 to 3.5 ones.
-    const double tau = median_adjacent_distance(string, clusters.fit.model);
+    const double tau = adjacent_distance(string, clusters.fit.model, 0.5);
     CHECK(tau > 4);
     CHECK(tau < 10);
     const AccessibilityMatrix matrix = accessibility(clusters.fit.model, tau, 2);

@@ -10,7 +10,7 @@ namespace kinetome {
 /// How far the matching relation M is spread from a seed substring.
 enum class BundleSpread {
     closure,         ///< its transitive closure (S1 Eq. 5)
-    closure_near,    ///< the same, among letters whose means are also near (within_step)
+    closure_near,    ///< the same, among letters whose means are also near (adjacent_step's median)
     closure_length,  ///< the same, among substrings whose lengths γ allows beside the seed's
     depth,           ///< so many steps of M from the seed
 };
@@ -20,7 +20,10 @@ struct MotionBundleOptions {
     double gamma = 0.8;  ///< γ: least ratio between a submotion's length and the bundle's mean
     BundleSpread spread = BundleSpread::depth;  ///< of the matching relation
     int32_t depth = 1;                          ///< steps of it, where the spread is `depth`
-    uint64_t seed = 1;                          ///< names the instance of a letter to begin at
+    /// Of the steps between the means of adjacent letters: no letters farther apart are matched; 1:
+    /// τ alone tells
+    double step_quantile = 0.75;
+    uint64_t seed = 1;  ///< names the instance of a letter to begin at
 };
 
 /// "closure", "closure-near", "closure-length", "depth:2".

@@ -10,6 +10,12 @@
 
 namespace kinetome {
 
+struct MotionStringOptions {
+    double longest_submotion = 200.0 / 120.0;  ///< λ′ in seconds (S1 §3.6: 200 frames)
+    double tau = 0;                            ///< τ of Eq. 2; 0: by tau_quantile
+    double tau_quantile = 0.75;  ///< of the distances between adjacent letters (S1: 0.5)
+};
+
 /// The m letters of a run of clips, repetitions collapsed inside clips only: a letter never spans
 /// a clip break, even where both sides are equal.
 struct MotionString {
@@ -33,9 +39,9 @@ void unpack(Unpacker& in, MotionString& string);
 MotionString make_motion_string(std::span<const int32_t> frame_letters,
                                 std::span<const int64_t> clip_frames);
 
-/// τ = median of d(s(j), s(j - 1)) over adjacent letters inside clips (S1 §3.6; the lower of the
-/// two middle ones when their number is even); 0 when there is no such pair.
-double median_adjacent_distance(const MotionString& string, const Mixture& mixture);
+/// Quantile of d(s(j), s(j - 1)) over adjacent letters inside clips (S1 §3.6: the median): the
+/// lower of the two that it falls between; 0 when there is no such pair. `quantile` in [0, 1].
+double adjacent_distance(const MotionString& string, const Mixture& mixture, double quantile);
 
 /// λ = λ′ (m - 1) / Σ (F̄(j) - F̄(j - 1)), adjacent letters inside clips, rounded, at least 2
 /// (S1 Eq. 7). λ′ in frames.

@@ -18,6 +18,7 @@
 #include "kinetome/models/bundle_ends.h"
 #include "kinetome/models/bundle_options.h"
 #include "kinetome/models/hierarchy_growth.h"
+#include "kinetome/models/motion_string.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/models/primitive.h"
 #include "kinetome/models/principal_markers.h"
@@ -43,11 +44,6 @@ struct PartitionOptions {
     std::string subject_from;  ///< expression on a take's path whose first group is its subject
 };
 
-struct StringOptions {
-    double longest_submotion = 200.0 / 120.0;  ///< λ′ in seconds (S1 §3.6: 200 frames)
-    double tau = 0;                            ///< τ of Eq. 2; 0: the median adjacent distance
-};
-
 struct NeighborOptions {
     KnnOptions knn;                        ///< r in cm for all effectors (S3: 64), and k
     KnnEngine engine = KnnEngine::blocks;  ///< that searches
@@ -68,7 +64,7 @@ struct ReindexOptions {
     FeatureOptions features;
     PartitionOptions partition;
     PoseClusterOptions pose_clusters;
-    StringOptions motion_strings;
+    MotionStringOptions motion_strings;
     PrincipalMarkerOptions principal_markers;
     PoseHierarchyOptions pose_hierarchy;
     MotionBundleOptions bundles;
