@@ -57,7 +57,7 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
                    "what an estimation is tested on: frames (a fifth, at random), blocks (of 4 s, "
                    "every 5th), takes (every 14th by name, or the last) or all")
         ->capture_default_str();
-    flags.hierarchy = std::make_shared<ReindexFlags>(app, "pose_hierarchy");
+    flags.hierarchy = std::make_shared<ReindexFlags>(app, std::set<std::string>{"pose_hierarchy"});
     app.add_option("--rate", flags.rate, "frames a second of tables, where no STORE tells")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();

@@ -33,19 +33,25 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
     app.add_flag("--quiet", options.log.quiet, "only warnings and errors")->group(group);
 }
 
-ReindexFlags::ReindexFlags(CLI::App& app, const std::string& stage) {
+ReindexFlags::ReindexFlags(CLI::App& app, std::set<std::string> stages, Otherwise otherwise)
+    : stages_(std::move(stages)) {
     app.add_option("--preset", preset_, "paper: every option at the paper's value")
         ->check(CLI::IsMember({"paper"}));
     app.add_option("--config", config_, "file of options, as config.toml of a generation");
     ReindexOptions defaults;
     for (const OptionRow& row : option_rows(defaults)) {
-        if (!stage.empty() && row.stage != stage) continue;
+        if (!has_flag(row)) continue;
         auto given = std::make_shared<Given>(Given{row.name, "", nullptr});
-        given->flag = app.add_option("--" + row.name, given->text, row.help)
-                          ->default_str(row.get())
-                          ->group(row.stage.empty() || row.stage == "files" ? "Files" : row.stage);
+        given->flag =
+            app.add_option("--" + row.name, given->text, row.help)
+                ->default_str(otherwise == Otherwise::as_stored ? "as in the store" : row.get())
+                ->group(row.stage.empty() || row.stage == "files" ? "Files" : row.stage);
         given_.push_back(given);
     }
+}
+
+bool ReindexFlags::has_flag(const OptionRow& row) const {
+    return stages_.empty() || stages_.count(row.stage) > 0;
 }
 
 ReindexFlags::Merged ReindexFlags::merge() const {
@@ -78,7 +84,7 @@ std::map<std::string, std::string> ReindexFlags::given() const {
     Merged merged = merge();
     std::map<std::string, std::string> values;
     for (const OptionRow& row : option_rows(merged.options)) {
-        if (merged.names.count(row.name)) values[row.name] = row.get();
+        if (has_flag(row) && merged.names.count(row.name)) values[row.name] = row.get();
     }
     return values;
 }

@@ -28,11 +28,14 @@ void add_common_options(CLI::App& app, CommonOptions& options);
 /// file, then the flags.
 class ReindexFlags {
   public:
-    /// `stage`: whose options alone are flags, for commands that are about it; "": of all.
-    explicit ReindexFlags(CLI::App& app, const std::string& stage = "");
+    /// What an option is that was not given: the default, or what the store was made with.
+    enum class Otherwise { the_default, as_stored };
+    /// `stages`: whose options alone are flags, for commands that are about them; none: of all.
+    explicit ReindexFlags(CLI::App& app, std::set<std::string> stages = {},
+                          Otherwise otherwise = Otherwise::the_default);
     /// All options. Throws UsageError when they make no sense together.
     ReindexOptions resolve() const;
-    /// Name and value of those that were given.
+    /// Name and value of those that were given and have a flag.
     std::map<std::string, std::string> given() const;
 
   private:
@@ -47,6 +50,9 @@ class ReindexFlags {
         std::string text;
         CLI::Option* flag;
     };
+    bool has_flag(const OptionRow& row) const;
+
+    std::set<std::string> stages_;
     std::string preset_;
     std::filesystem::path config_;
     std::vector<std::shared_ptr<Given>> given_;

@@ -68,9 +68,13 @@ void RunInProgress::open_last(const std::string& id) {
     }
 }
 
+std::optional<RunRecord> RunInProgress::opened() const {
+    return find_record(record_file());
+}
+
 void RunInProgress::enter(const RunRecord& record, const std::string& slice) {
     const StoreLock moment = store_.lock_record();
-    const auto before = find_record(record_file());
+    const auto before = opened();
     const bool changes = fs::exists(record_file()) && !(before && same_work(*before, record));
     if (changes) {
         if (const auto other = store_.other_slice_at_work(slice)) {

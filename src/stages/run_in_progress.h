@@ -25,6 +25,8 @@ class RunInProgress {
     const Log& log() const { return log_; }
     std::filesystem::path record_file() const { return workspace_->folder() / "run.json"; }
 
+    /// What the run was entered for; nothing when there is none, or none that can be read.
+    std::optional<RunRecord> opened() const;
     /// Leaves the record that `publish` and joining parts start from. `slice` is the lock held: ""
     /// for the writer's. Throws CreateError rather than change the record that other slices are at
     /// work for.

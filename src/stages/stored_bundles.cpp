@@ -5,10 +5,8 @@
 #include <set>
 
 #include "kinetome/base/error.h"
-#include "kinetome/base/file.h"
 #include "kinetome/models/bundle_members.h"
 #include "kinetome/stages/bundle_file.h"
-#include "kinetome/stages/options.h"
 
 namespace kinetome {
 
@@ -42,11 +40,12 @@ std::vector<ClipPrimitive> node_members(const Generation& generation) {
     return members;
 }
 
+/// ρ that the bundles were made with.
 double rho_of(const Generation& generation) {
-    const std::filesystem::path file = generation.folder() / "config.toml";
-    ReindexOptions options;
-    parse_configuration(read_file(file), file.string(), options);
-    return options.bundles.rho;
+    const auto& parts = generation.ledger().find("bundles.h5")->key.parts();
+    const auto rho = std::ranges::find(parts, "option rho", &StageKey::Part::first);
+    if (rho == parts.end()) throw StoreError("the key of bundles.h5 does not tell its rho");
+    return std::stod(rho->second);
 }
 
 int64_t height_of(const StoredGraph& graph, int32_t node) {

@@ -58,6 +58,19 @@ RunRecord open_run(const ReindexRequest& request, const Log& log, const StopToke
 /// when none is open, and UsageError when the request is not what it was opened for.
 RunSummary reindex(const ReindexRequest& request, const Log& log, const StopToken& stop);
 
+struct RemakeRequest {
+    std::filesystem::path store;
+    std::set<std::string> stages;                ///< whose options may be given
+    std::map<std::string, std::string> options;  ///< name and value; the others stay as they are
+    Resources resources;
+    bool copy = false;  ///< copy unchanged files instead of linking them
+};
+
+/// Stages of the current generation again, with other options, and all that is made of them; takes
+/// are not read. Publishes. Throws UsageError when what those stages need is not there as this
+/// version makes it, and CreateError while a run for something else is in progress.
+RunSummary remake(const RemakeRequest& request, const Log& log, const StopToken& stop);
+
 struct IngestSummary {
     int64_t indexed = 0;
     int64_t quarantined = 0;

@@ -1,0 +1,173 @@
+// What `bundles` with options promises, and what leads from bundle to bundle.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "store_on_disk.h"
+#include "support/temporary_folder.h"
+#include "takes.h"
+
+namespace {
+
+constexpr int usage = 64, cannot_create = 73;
+const std::string stages_of_bundles =
+    "frames,features,pose_clusters,motion_strings,bundles,bundle_graph";
+
+std::vector<std::string> bundles_again(const StoreOnDisk& store, std::vector<std::string> more) {
+    std::vector<std::string> words = {"bundles", store.name()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream text(line);
+    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    return cells;
+}
+
+/// Rows of a table without its header.
+std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> rows;
+    for (const std::string& line : lines_of(csv)) rows.push_back(cells_of(line));
+    rows.erase(rows.begin());
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("bundles made again over a store are those of a run with the same options", "[bundles]") {
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 12000, 2);
+    // One take that cannot be read, and one that the survey leaves out.
+    write_text(corpus / "01" / "broken.amc", ":DEGREES\n1\nroot 1 2\n");
+    fs::copy_file(corpus / "01" / "01_01.amc", corpus / "01" / "twice.amc");
+    const StoreOnDisk store(folder / "store"), fresh(folder / "fresh");
+    const std::vector<std::string> options = {"--rho", "2", "--gamma", "0.5"};
+    const auto only = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--only", stages_of_bundles});
+        return more;
+    };
+    require_program(reindex(corpus, store.path(), only({})), 3);
+    require_program(reindex(corpus, fresh.path(), only(options)), 3);
+    fs::rename(corpus, folder / "taken away");  // takes are not read again
+
+    const std::string listed = require_program({"bundles", store.name()}).output;
+    const std::string before = *store.current();
+    const CommandResult again = require_program(bundles_again(store, options));
+    CHECK(RunLog(again.errors).names_made() ==
+          std::set<std::string>{"bundles.h5", "bundle_graph.h5"});
+    CHECK(contains(again.errors, "bundles.h5: to be made: option rho was 1, is 2"));
+    CHECK(again.output == require_program({"bundles", fresh.name()}).output);
+    CHECK(again.output != listed);
+    CHECK(store.digests() == fresh.digests());
+    CHECK(text_of(store.file("config.toml")) == text_of(fresh.file("config.toml")));
+    require_program({"verify", store.name()});
+    CHECK(require_program({"bundles", store.name(), "--generation", before}).output == listed);
+
+    // The same again is nothing new; and what was not asked for stays.
+    const auto generations = store.generations();
+    CHECK(contains(require_program(bundles_again(store, {"--rho", "2"})).errors, "is up to date"));
+    CHECK(store.generations() == generations);
+
+    CHECK(contains(require_program(bundles_again(store, {"--rho", "0"}), usage).errors,
+                   "rho must be above 0"));
+    CHECK(contains(
+        require_program(bundles_again(store, {"--rho", "1", "--generation", before}), usage).errors,
+        "--generation is of no use"));
+    CHECK(store.generations() == generations);
+
+    // A reindex of the same takes goes on from there.
+    fs::rename(folder / "taken away", corpus);
+    CHECK(contains(require_program(reindex(corpus, store.path(), only(options)), 3).errors,
+                   "is up to date"));
+}
+
+TEST_CASE("bundles made again are resumed, and disturb no other run", "[bundles]") {
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 12000, 2);
+    const StoreOnDisk store(folder / "store"), whole(folder / "whole");
+    require_program(reindex(corpus, store.path(), {"--only", stages_of_bundles}));
+    require_program(
+        reindex(corpus, whole.path(), {"--only", stages_of_bundles, "--spread", "depth:3"}));
+
+    const auto spread = bundles_again(store, {"--spread", "depth:3"});
+    Process process(program(spread));
+    wait_until([&] { return fs::exists(store.run_folder() / "run.json") || process.ended(); });
+    process.signal(SIGKILL);
+    process.wait();
+    require_program({"verify", store.name()});
+    require_program(spread);
+    CHECK(store.digests() == whole.digests());
+
+    // Of a run for other takes or options what is finished would be lost.
+    require_program({"plan", corpus.string(), "--store", store.name(), "--open", "--clusters", "61",
+                     "--shard-frames", "8192"});
+    CHECK(contains(require_program(bundles_again(store, {"--rho", "2"}), cannot_create).errors,
+                   "another run is in progress"));
+    require_program({"bundles", store.name()});
+}
+
+TEST_CASE("bundles are made of letters that are there", "[bundles]") {
+    const TemporaryFolder folder;
+    generate_corpus(folder / "takes", 3000, 1);
+    const StoreOnDisk store(folder / "store");
+    require_program(reindex(folder / "takes", store.path(), {"--only", "frames,features"}));
+    const CommandResult refused = require_program(bundles_again(store, {"--rho", "2"}), usage);
+    CHECK(contains(refused.errors, "motion_strings needs pose_clusters.h5"));
+    CHECK(contains(refused.errors, "kinetome reindex"));
+    CHECK_FALSE(fs::exists(folder / "nothing"));
+    CHECK(run_program({"bundles", (folder / "nothing").string(), "--rho", "2"}).exit_code != 0);
+    CHECK_FALSE(fs::exists(folder / "nothing"));
+}
+
+TEST_CASE("walks are refused between bundles that no path joins, and between no others",
+          "[bundles]") {
+    const TemporaryFolder folder;
+    generate_corpus(folder / "takes", 16000, 2);
+    const StoreOnDisk store(folder / "store");
+    require_program(reindex(folder / "takes", store.path(), {"--only", stages_of_bundles}));
+    std::map<std::string, std::set<std::string>> reached;  // by bundle, at first in one step
+    for (const auto& row :
+         rows_of(require_program({"export", store.name(), "bundle-graph"}).output)) {
+        reached[row[2]].insert(row[3]);
+        reached.try_emplace(row[3]);
+    }
+    const auto pairs = [&] {
+        size_t count = 0;
+        for (const auto& [from, all] : reached) count += all.size();
+        return count;
+    };
+    for (size_t before = 0; before != pairs();) {
+        before = pairs();
+        for (auto& [from, all] : reached) {
+            for (const std::string& next : std::set<std::string>(all)) {
+                all.insert(reached[next].begin(), reached[next].end());
+            }
+        }
+    }
+    constexpr int tried = 4;
+    int ways = 0, none = 0;
+    for (const auto& [from, all] : reached) {
+        for (const auto& [to, unused] : reached) {
+            int& count = all.count(to) ? ways : none;
+            if (from == to || count == tried) continue;
+            ++count;
+            CAPTURE(from, to);
+            const CommandResult walk =
+                run_program({"walk", store.name(), "--graph", "bundles", "--from", from, "--to", to,
+                             "--seconds", "5", "-o", (folder / "w.bvh").string()});
+            if (all.count(to)) {
+                CHECK(walk.exit_code == 0);
+                continue;
+            }
+            CHECK(walk.exit_code == usage);
+            CHECK(contains(walk.errors, "no path from '" + from + "' to '" + to + "'"));
+        }
+    }
+    CHECK(ways == tried);
+    CHECK(none == tried);
+}
