@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "frame_range.h"
+#include "kinetome/stages/bundle_query.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/signature_query.h"
 #include "write_text.h"
@@ -13,8 +14,8 @@ namespace kinetome::cli {
 namespace {
 
 struct QueryFlags {
-    std::filesystem::path store, output;
-    std::string frames, rule = "pace", format = "csv", generation = "current";
+    std::filesystem::path store, output, labels;
+    std::string bundle, frames, rule = "pace", format = "csv", generation = "current";
     SignatureQuery query;
 };
 
@@ -27,8 +28,13 @@ MatchRule parse_rule(const std::string& name) {
 
 ExitCode answer(const QueryFlags& flags, const Invocation& invocation) {
     SignatureQuery query = flags.query;
-    if (query.clip.empty() == query.file.empty()) {
-        throw UsageError("give either --clip, a clip of the store, or --file, a take");
+    if (!query.clip.empty() + !query.file.empty() + !flags.bundle.empty() != 1) {
+        throw UsageError(
+            "give one of --clip, a clip of the store, --file, a take, and --bundle, a motion "
+            "bundle of the store");
+    }
+    if (!flags.bundle.empty() && !flags.frames.empty()) {
+        throw UsageError("--frames: a bundle is looked for as a whole");
     }
     if (query.answers < 1) throw UsageError(fmt::format("-k {}: at least 1", query.answers));
     if (!(query.search.match.tolerance >= 0)) {
@@ -39,9 +45,11 @@ ExitCode answer(const QueryFlags& flags, const Invocation& invocation) {
     if (!flags.frames.empty()) query.frames = parse_frame_range(flags.frames);
     const TableFormat format = parse_table_format(flags.format);
     const OpenStore open(flags.store, flags.generation);
-    const std::string text =
-        write_table(query_table(open.generation, query, invocation.resources().threads), format);
-    write_text(flags.output, text);
+    const int threads = invocation.resources().threads;
+    const Table table =
+        flags.bundle.empty() ? query_table(open.generation, query, threads)
+                             : bundle_query_table(open, flags.bundle, flags.labels, query, threads);
+    write_text(flags.output, write_table(table, format));
     return ExitCode::success;
 }
 
@@ -56,6 +64,12 @@ Command query_command() {
                 app.add_option("STORE", flags->store, "store to read")->required();
                 app.add_option("--clip", query.clip, "clip of the store to look for");
                 app.add_option("--file", query.file, "take to look for, in the store or not");
+                app.add_option("--bundle", flags->bundle,
+                               "motion bundle of the store to look for, a number or a label: where "
+                               "motion like its members is beside them");
+                app.add_option("--labels", flags->labels,
+                               "of members of bundles: clip,first,end,label (default: "
+                               "STORE/labels.csv)");
                 app.add_option("--frames", flags->frames,
                                "A:B, its frames from A to before B (default: all)");
                 app.add_option("-k", query.answers, "most answers")->capture_default_str();

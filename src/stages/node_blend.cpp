@@ -13,30 +13,30 @@
 #include "walk_clips.h"
 
 namespace kinetome {
-namespace {
 
-/// The motions of the one cluster or bundle that has the label or number.
-std::vector<ClipPrimitive> motions_of(const std::vector<ClipPrimitive>& primitives,
-                                      const BlendOptions& options) {
+std::vector<ClipPrimitive> motions_of_node(const std::vector<ClipPrimitive>& primitives,
+                                           const std::string& name, const std::string& group,
+                                           const std::string& option) {
     std::vector<ClipPrimitive> motions;
     std::set<int32_t> clusters;
     for (const ClipPrimitive& one : primitives) {
         if (one.cluster < 0) continue;
-        if (one.label != options.node && std::to_string(one.cluster) != options.node) continue;
+        if (one.label != name && std::to_string(one.cluster) != name) continue;
         motions.push_back(one);
         clusters.insert(one.cluster);
     }
     if (motions.empty()) {
-        throw UsageError(fmt::format("--blend {}: no {} has this label or number",
-                                     quote_for_message(options.node), options.style.group));
+        throw UsageError(fmt::format("{} {}: no {} has this label or number", option,
+                                     quote_for_message(name), group));
     }
     if (clusters.size() > 1) {
-        throw UsageError(fmt::format("--blend {}: that are {}s {}; name one of them",
-                                     quote_for_message(options.node), options.style.group,
-                                     fmt::join(clusters, ", ")));
+        throw UsageError(fmt::format("{} {}: that are {}s {}; name one of them", option,
+                                     quote_for_message(name), group, fmt::join(clusters, ", ")));
     }
     return motions;
 }
+
+namespace {
 
 /// One for each motion, which add up to 1.
 std::vector<double> weights_of(const BlendOptions& options, size_t motions) {
@@ -78,7 +78,7 @@ double largest_pose_step(const Clip& clip) {
 NodeBlend blend_node(const std::vector<ClipPrimitive>& primitives, const ClipSource& source,
                      const BlendOptions& options) {
     NodeBlend blend;
-    blend.parts = motions_of(primitives, options);
+    blend.parts = motions_of_node(primitives, options.node, options.style.group, "--blend");
     blend.weights = weights_of(options, blend.parts.size());
     const auto heaviest =
         static_cast<int32_t>(std::ranges::max_element(blend.weights) - blend.weights.begin());

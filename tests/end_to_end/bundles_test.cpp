@@ -1,4 +1,4 @@
-// What `bundles` with options promises, and what leads from bundle to bundle.
+// What `bundles` with options and `query --bundle` promise.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -122,6 +122,73 @@ TEST_CASE("bundles are made of letters that are there", "[bundles]") {
     CHECK_FALSE(fs::exists(folder / "nothing"));
     CHECK(run_program({"bundles", (folder / "nothing").string(), "--rho", "2"}).exit_code != 0);
     CHECK_FALSE(fs::exists(folder / "nothing"));
+}
+
+TEST_CASE("a bundle finds motion of its label that it does not hold", "[bundles]") {
+    const TemporaryFolder folder;
+    const fs::path corpus = folder / "takes";
+    generate_corpus(corpus, 24000, 2);
+    const StoreOnDisk store(folder / "store");
+    require_program(reindex(corpus, store.path(),
+                            {"--only", stages_of_bundles + ",pose_hierarchy,signatures"}));
+    fs::copy_file(corpus / "cycles.csv", store.path() / "labels.csv");
+    struct Piece {
+        std::string clip;
+        int64_t first, end;
+        bool shares(const Piece& other) const {
+            const int64_t both = std::min(end, other.end) - std::max(first, other.first);
+            return clip == other.clip &&
+                   10 * both > 3 * std::min(end - first, other.end - other.first);
+        }
+    };
+    std::vector<Piece> walks;
+    for (const auto& row : rows_of(text_of(corpus / "truth.csv"))) {
+        if (row[3] == "walk") walks.push_back({row[0], std::stoll(row[1]), std::stoll(row[2])});
+    }
+    // The largest bundle of walking.
+    std::string bundle;
+    for (const auto& row :
+         rows_of(require_program({"bundles", store.name(), "--format", "csv"}).output)) {
+        if (bundle.empty() && row[1] == "walk") bundle = row[0];
+    }
+    REQUIRE(!bundle.empty());
+    std::vector<Piece> members;
+    for (const auto& row : rows_of(require_program({"export", store.name(), "bundles"}).output)) {
+        if (row[0] == bundle) members.push_back({row[1], std::stoll(row[2]), std::stoll(row[3])});
+    }
+    REQUIRE(members.size() > 1);
+
+    for (const bool rerank : {false, true}) {
+        std::vector<std::string> words = {"query", store.name(), "--bundle", bundle, "-k", "8"};
+        if (rerank) words.push_back("--rerank");
+        const std::string table = require_program(words).output;
+        CHECK(lines_of(table).front() == "rank,clip,first,end,distance");
+        const auto rows = rows_of(table);
+        REQUIRE(rows.size() == 8);
+        int64_t walking = 0;
+        double last = 0;
+        for (size_t i = 0; i < rows.size(); ++i) {
+            const Piece found{rows[i][1], std::stoll(rows[i][2]), std::stoll(rows[i][3])};
+            CHECK(rows[i][0] == std::to_string(i + 1));
+            CHECK(std::stod(rows[i][4]) >= last);
+            last = std::stod(rows[i][4]);
+            for (const Piece& member : members) CHECK_FALSE(found.shares(member));
+            walking += std::ranges::any_of(walks, [&](const Piece& walk) {
+                return walk.clip == found.clip &&
+                       std::min(walk.end, found.end) - std::max(walk.first, found.first) >
+                           (found.end - found.first) / 2;
+            });
+        }
+        CHECK(walking >= 7);
+    }
+    const auto refused = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = {"query", store.name()};
+        words.insert(words.end(), more.begin(), more.end());
+        return require_program(words, usage).errors;
+    };
+    CHECK(contains(refused({"--bundle", "swimming"}), "no bundle has this label or number"));
+    CHECK(contains(refused({"--bundle", bundle, "--clip", "01_01"}), "give one of"));
+    CHECK(contains(refused({"--bundle", bundle, "--frames", "0:9"}), "as a whole"));
 }
 
 TEST_CASE("walks are refused between bundles that no path joins, and between no others",
