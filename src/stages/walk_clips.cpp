@@ -130,15 +130,22 @@ double WalkClips::excess(int32_t entry, int32_t exit) {
     if (!is_new) return found->second;
     const auto node = graph_.nodes.graph.node_of(entry);
     std::vector<MotionRun> there = runs({.steps = {{node, entry, exit}}});
-    there.front().first -= 2;  // what is a frame long leaps from the frames before to those after
-    there.back().end += 2;
-    const Clip played = play_runs(clips_, there, supports_);
     double allowed = 0;
     for (const MotionRun& run : there) {
         allowed = std::max(allowed, largest_steps_[static_cast<size_t>(run.clip)]);
     }
-    const MotionRun whole{.first = 0, .end = static_cast<double>(played.frames())};
-    return found->second = largest_step(pose_steps(played), whole) - allowed;
+    // What is a frame long leaps from the frames before to those after. Fades last whole or half
+    // frames: a walk comes there on a frame or between two.
+    const double first = there.front().first;
+    there.back().end += 2;
+    double largest = 0;
+    for (const double before : {2., 2.5}) {
+        there.front().first = first - before;
+        const Clip played = play_runs(clips_, there, supports_);
+        const MotionRun whole{.first = 0, .end = static_cast<double>(played.frames())};
+        largest = std::max(largest, largest_step(pose_steps(played), whole));
+    }
+    return found->second = largest - allowed;
 }
 
 }  // namespace kinetome
