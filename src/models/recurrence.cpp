@@ -22,10 +22,18 @@ RowRange hold_of(const NeighborGraph& graph, int64_t frame, int64_t longest) {
     return {frame - before, frame + 1 + after};
 }
 
+/// Of a frame that meets another, by the lengths of their holds: the geometric mean makes up for
+/// tempo. That of a rest is only how far we looked, not how slow it is.
+double weight(int64_t hold, int64_t other, int64_t rest) {
+    const int64_t longer = std::max(hold, other);
+    return longer < rest ? 1 / std::sqrt(double(hold) * double(other)) : 1 / double(longer);
+}
+
 }  // namespace
 
 Recurrence recurrence(const NeighborGraph& graph, int64_t longest_hold) {
     const NeighborGraph similar = symmetrised(graph);
+    const int64_t rest = 2 * longest_hold + 1;
     std::vector<RowRange> hold;
     Recurrence result;
     for (int64_t i = 0; i < similar.frames(); ++i) {
@@ -38,7 +46,7 @@ Recurrence recurrence(const NeighborGraph& graph, int64_t longest_hold) {
             const RowRange& other = hold[static_cast<size_t>(j)];
             if (holds(own, j) || holds(other, i)) continue;
             result.frames.push_back(j);
-            result.weights.push_back(1 / std::sqrt(double(own.size()) * double(other.size())));
+            result.weights.push_back(weight(own.size(), other.size(), rest));
         }
         result.offsets.push_back(static_cast<int64_t>(result.frames.size()));
     }

@@ -11,7 +11,8 @@ namespace kinetome {
 
 /// A symmetric sparse matrix of weights: the neighbours of each frame but those that are similar
 /// to it for being near in time. However slow or fast a movement is, a frame that meets it again
-/// once gets about 1 in all.
+/// once gets about 1 in all. Who passes through the pose of a rest, which has no tempo, meets it
+/// once, however long it is.
 struct Recurrence {
     std::vector<int64_t> offsets{0};  ///< of frame i: [offsets[i], offsets[i + 1])
     std::vector<int32_t> frames;      ///< ascending
@@ -32,8 +33,9 @@ struct Recurrence {
 };
 
 /// The hold of a frame reaches through consecutive neighbours, at most `longest_hold` frames to
-/// each side: removing holds leaves the anti-diagonals of a movement that runs back the way it came
-/// where a component's removal takes them along.
+/// each side; where it reaches as far as that on both, the frame rests. Removing holds leaves the
+/// anti-diagonals of a movement that runs back the way it came where a component's removal takes
+/// them along.
 Recurrence recurrence(const NeighborGraph& graph, int64_t longest_hold);
 
 }  // namespace kinetome

@@ -67,7 +67,7 @@ const std::vector<StageRow>& stage_table() {
         {.name = "segments",
          .inputs = {"features", "neighbors"},
          .sharded = false,
-         .format_version = 1,
+         .format_version = 2,
          .description = "takes cut into activities and transitions (S3 §3.1)",
          .make = make_segments},
         {.name = "primitives",

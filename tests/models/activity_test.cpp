@@ -91,6 +91,41 @@ TEST_CASE("frames that stay similar are no repetition, whoever of a pair they ar
     CHECK(recurrence(graph, 0).frames.size() == 8);
 }
 
+TEST_CASE("who passes through the pose of a rest meets it once, however long it is") {
+    // Frames 0 to 7 rest, and 10 passes through their pose.
+    NeighborGraph graph;
+    {
+        std::vector<int64_t> offsets{0};
+        std::vector<int32_t> frames;
+        for (int32_t i = 0; i < 14; ++i) {
+            for (int32_t j = 0; i < 8 && j < 8; ++j) frames.push_back(j);
+            if (i < 8) frames.push_back(10);
+            if (i == 10) frames.insert(frames.end(), {0, 1, 2, 3, 4, 5, 6, 7});
+            if (i >= 8) frames.push_back(i);
+            offsets.push_back(static_cast<int64_t>(frames.size()));
+        }
+        graph = NeighborGraph(offsets, frames, std::vector<float>(frames.size(), 1.0F));
+    }
+    const Recurrence recurring = recurrence(graph, 3);
+    CHECK(recurring.hold == std::vector<int32_t>{4, 5, 6, 7, 7, 6, 5, 4, 1, 1, 1, 1, 1, 1});
+    const auto weights = recurring.weights_of(10);
+    REQUIRE(weights.size() == 8);
+    CHECK(weights[0] == Approx(1 / std::sqrt(4.0)));  // no rest: it may be slow
+    CHECK(weights[3] == Approx(1 / 7.0));
+}
+
+TEST_CASE("a rest is an activity of its own, though a movement pauses in the same posture") {
+    toy::Motion motion;
+    motion.hold(120, 0);
+    for (int cycle = 0; cycle < 6; ++cycle) motion.raise(1, 36, 4, 300).hold(6, 0);
+    const MatrixF rows = motion.rows(0.5);
+    const auto segments = activities_of(rows, ActivityMethod::repetition);
+    check_cover(segments, rows.rows());
+    REQUIRE(segments.size() == 2);
+    CHECK(near(segments[0].frames.end, 120, 6));
+    CHECK(segments[0].cluster != segments[1].cluster);
+}
+
 TEST_CASE("each movement is an activity, and one that comes back is the same") {
     const MatrixF rows = toy::Motion().circle(4, 30, 0).circle(5, 36, 2).circle(3, 30, 0).rows();
     for (const auto method : {ActivityMethod::repetition, ActivityMethod::region_growing}) {
