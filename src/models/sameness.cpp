@@ -22,7 +22,8 @@ std::vector<int32_t> segment_of_frames(std::span<const Segment> segments) {
     return numbers;
 }
 
-/// Mean weight of a frame of one segment with a frame of another, for each pair of segments.
+/// Mean weight of a frame of one segment with a frame of another, for each pair of segments; of a
+/// frame with itself, 1.
 MatrixD density(std::span<const Segment> segments, const Recurrence& recurrence) {
     const auto count = static_cast<int64_t>(segments.size());
     const std::vector<int32_t> segment_of = segment_of_frames(segments);
@@ -36,6 +37,7 @@ MatrixD density(std::span<const Segment> segments, const Recurrence& recurrence)
     }
     VectorD lengths(count);
     for (int64_t s = 0; s < count; ++s) lengths[s] = double(segments[size_t(s)].frames.size());
+    sums.diagonal() += lengths;
     return sums.array() / (lengths * lengths.transpose()).array();
 }
 
@@ -45,8 +47,7 @@ void cluster_activities(std::span<Segment> segments, const Recurrence& recurrenc
                         double least_sameness) {
     const MatrixD dense = density(segments, recurrence);
     const auto same = [&](int64_t x, int64_t y) {
-        const double within = std::sqrt(dense(x, x) * dense(y, y));
-        return within > 0 && dense(x, y) >= least_sameness * within;
+        return dense(x, y) >= least_sameness * std::sqrt(dense(x, x) * dense(y, y));
     };
     int32_t clusters = 0;
     for (Segment& segment : segments) segment.cluster = -1;

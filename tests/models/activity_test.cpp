@@ -6,6 +6,7 @@
 #include "../../src/models/boundaries.h"
 #include "../../src/models/recurrence.h"
 #include "../../src/models/repetition_cuts.h"
+#include "../../src/models/sameness.h"
 #include "toy_motion.h"
 
 using namespace kinetome;
@@ -124,6 +125,28 @@ TEST_CASE("a rest is an activity of its own, though a movement pauses in the sam
     REQUIRE(segments.size() == 2);
     CHECK(near(segments[0].frames.end, 120, 6));
     CHECK(segments[0].cluster != segments[1].cluster);
+}
+
+TEST_CASE(
+    "as many or fewer cycles of a movement are the same, a part of it that is shared is not") {
+    // Two cycles of two frames, then one that executes the movement, or its first frame alone.
+    Recurrence whole{{0, 2, 4, 6, 8, 10, 12},
+                     {2, 4, 3, 5, 0, 4, 1, 5, 0, 2, 1, 3},
+                     std::vector<double>(12, 1.0),
+                     std::vector<int32_t>(6, 1)};
+    std::vector<Segment> segments{{{0, 4}, SegmentKind::activity, -1},
+                                  {{4, 6}, SegmentKind::activity, -1}};
+    cluster_activities(segments, whole, 1);
+    CHECK(segments[0].cluster == segments[1].cluster);
+
+    Recurrence part{{0, 2, 3, 5, 6, 8, 8},
+                    {2, 4, 3, 0, 4, 1, 0, 2},
+                    std::vector<double>(8, 1.0),
+                    std::vector<int32_t>(6, 1)};
+    cluster_activities(segments, part, 0.6);
+    CHECK(segments[0].cluster != segments[1].cluster);
+    cluster_activities(segments, part, 0.5);
+    CHECK(segments[0].cluster == segments[1].cluster);
 }
 
 TEST_CASE("each movement is an activity, and one that comes back is the same") {

@@ -29,9 +29,9 @@ struct RepetitionOptions {
     double longest_hold = 4.0 / 3;  ///< frames that stay similar to one for up to so long before
                                     ///< and after it do not repeat it
     double segment_cost = 0.3;      ///< repetitions that one segment more must bring
-    double least_repetition = 0.5;  ///< of an activity that is no longer than a transition
-    double least_sameness = 1;  ///< from which two activities are the same; 1 is what the halves
-                                ///< of one activity have
+    double least_repetition = 0.5;    ///< of an activity that is no longer than a transition
+    double least_sameness = 2.0 / 3;  ///< from which two activities are the same; 1 is what the
+                                      ///< halves of one activity have
     double transition_ratio = 1.5;  ///< a frame of a transition is farther from the activity than …
     double transition_floor = 15;   ///< … this and so many times as far as the activity's median
     double least_return = 2.0 / 3;  ///< frames nearer in time do not count for that
