@@ -51,11 +51,10 @@ struct Unlikeness {
     }
 };
 
-/// The boundary within `reach` frames of `middle` with the least sum of unlikeness.
+/// The boundary with the least sum of unlikeness, at most `reach` frames inside either activity.
 int64_t best_boundary(const Unlikeness& left, const Unlikeness& right, int64_t reach) {
-    const int64_t middle = left.activity.end;
-    const int64_t first = middle - std::min(reach, left.activity.size() / 3);
-    const int64_t last = middle + std::min(reach, right.activity.size() / 3);
+    const int64_t first = left.activity.end - std::min(reach, left.activity.size() / 3);
+    const int64_t last = right.activity.first + std::min(reach, right.activity.size() / 3);
     double sum = 0, least = 0;
     int64_t best = first;
     for (int64_t frame = first; frame < last; ++frame) {
@@ -70,28 +69,30 @@ int64_t best_boundary(const Unlikeness& left, const Unlikeness& right, int64_t r
 
 }  // namespace
 
+int64_t likeliest_boundary(const RowRange& before, const RowRange& after,
+                           const MatrixFView& features, const RepetitionOptions& options,
+                           double rate) {
+    const int64_t least_return = frame_count(options.least_return, rate);
+    Unlikeness left({0, before.size()}, least_return);
+    Unlikeness right({after.first - before.first, after.end - before.first}, least_return);
+    for_each_cost_row({features, {before.first, after.end}}, frame_count(options.path_side, rate),
+                      [&](int64_t frame, const auto& costs) {
+                          left.add(frame, costs);
+                          right.add(frame, costs);
+                      });
+    left.scale_by_own(options.transition_floor);
+    right.scale_by_own(options.transition_floor);
+    return before.first + best_boundary(left, right, frame_count(options.boundary_reach, rate));
+}
+
 void refine_boundaries(std::span<Segment> segments, const MatrixFView& features,
                        const RepetitionOptions& options, double rate) {
-    const int64_t least_return = frame_count(options.least_return, rate);
     for (size_t s = 0; s + 1 < segments.size(); ++s) {
-        RowRange& before = segments[s].frames;
-        RowRange& after = segments[s + 1].frames;
         if (segments[s].kind != SegmentKind::activity) continue;
         if (segments[s + 1].kind != SegmentKind::activity) continue;
-
-        Unlikeness left({0, before.size()}, least_return);
-        Unlikeness right({before.size(), before.size() + after.size()}, least_return);
-        for_each_cost_row({features, {before.first, after.end}},
-                          frame_count(options.path_side, rate),
-                          [&](int64_t frame, const auto& costs) {
-                              left.add(frame, costs);
-                              right.add(frame, costs);
-                          });
-        left.scale_by_own(options.transition_floor);
-        right.scale_by_own(options.transition_floor);
-        const int64_t boundary =
-            best_boundary(left, right, frame_count(options.boundary_reach, rate));
-        before.end = after.first = before.first + boundary;
+        RowRange& before = segments[s].frames;
+        RowRange& after = segments[s + 1].frames;
+        before.end = after.first = likeliest_boundary(before, after, features, options, rate);
     }
 }
 

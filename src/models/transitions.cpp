@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "boundaries.h"
 #include "frame_count.h"
 #include "frame_distances.h"
 
@@ -90,11 +91,17 @@ std::vector<Segment> with_transitions(const std::vector<Segment>& segments,
         const bool after_activity = s > 0 && segments[s - 1].kind == SegmentKind::activity;
         if (after_activity && segment.kind == SegmentKind::activity &&
             sides[s - 1].tail + sides[s].head >= shortest) {
-            const RowRange frames{segment.frames.first - sides[s - 1].tail,
-                                  segment.frames.first + sides[s].head};
-            result.back().frames.end = frames.first;
-            segment.frames.first = frames.end;
-            result.push_back({frames, SegmentKind::transition, -1});
+            RowRange& before = result.back().frames;
+            RowRange& after = segment.frames;
+            before.end -= sides[s - 1].tail;
+            after.first += sides[s].head;
+            const RowRange between{before.end, after.first};
+            const int64_t boundary = likeliest_boundary(before, after, features, options, rate);
+            if (boundary >= between.first && boundary <= between.end) {
+                result.push_back({between, SegmentKind::transition, -1});
+            } else {
+                before.end = after.first = boundary;
+            }
         }
         result.push_back(segment);
     }

@@ -10,7 +10,8 @@
 namespace kinetome {
 
 /// Puts a transition between activities that meet where frames on either side are far from all
-/// that their own activity does at another time.
+/// that their own activity does at another time. Where they are not far from what the other one
+/// does, the boundary of the two lies elsewhere, and is moved there instead.
 std::vector<Segment> with_transitions(const std::vector<Segment>& segments,
                                       const MatrixFView& features, const Recurrence& recurrence,
                                       const RepetitionOptions& options, double rate);

@@ -7,6 +7,7 @@
 #include "../../src/models/recurrence.h"
 #include "../../src/models/repetition_cuts.h"
 #include "../../src/models/sameness.h"
+#include "../../src/models/transitions.h"
 #include "toy_motion.h"
 
 using namespace kinetome;
@@ -227,6 +228,21 @@ TEST_CASE("a boundary is moved to where the frames are likest their own activiti
     const std::vector<Segment> before = apart;
     refine_boundaries(apart, rows, {}, 30);
     CHECK(apart == before);
+}
+
+TEST_CASE("what only one of two activities does not know is no transition") {
+    const MatrixF rows = toy::Motion().circle(4, 30, 0).circle(3, 60, 2).rows();
+    const Recurrence recurring = recurrence(toy::graph_of(rows), 40);
+    const auto boundary_at = [&](int64_t frame) {
+        return with_transitions(
+            {{{0, frame}, SegmentKind::activity, 0}, {{frame, 300}, SegmentKind::activity, 1}},
+            rows, recurring, {}, 30);
+    };
+    // Forty frames of the second movement are strange to the first, more than a transition takes.
+    const auto late = boundary_at(160);
+    check_cover(late, 300);
+    REQUIRE(late.size() == 2);
+    CHECK(near(late[0].frames.end, 120, 2));
 }
 
 TEST_CASE("boundaries of activities of a frame or two stay within them") {
