@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "boundaries.h"
+#include "foreign_parts.h"
 #include "frame_count.h"
 #include "recurrence.h"
 #include "region_growing.h"
@@ -15,10 +16,12 @@ namespace {
 
 /// What does not repeat and is short is a transition, if it lies between others.
 std::vector<Segment> repetitive_segments(const Recurrence& recurrence,
-                                         const RepetitionOptions& options,
+                                         const RepetitionOptions& options, double rate,
                                          int64_t longest_transition) {
     std::vector<Segment> segments;
-    for (const auto& [frames, repetitions] : repetition_cuts(recurrence, options.segment_cost)) {
+    const auto cuts = without_foreign_parts(repetition_cuts(recurrence, options.segment_cost),
+                                            recurrence, options, rate);
+    for (const auto& [frames, repetitions] : cuts) {
         const bool is_between = frames.first > 0 && frames.end < recurrence.size();
         const bool is_transition = is_between && repetitions < options.least_repetition &&
                                    frames.size() < longest_transition;
@@ -34,8 +37,8 @@ std::vector<Segment> repetitive_activities(const NeighborGraph& graph, const Mat
     const Recurrence recurring =
         recurrence(within(graph, options.radius), frame_count(options.longest_hold, rate));
     const std::vector<Segment> activities =
-        joined_activities(repetitive_segments(recurring, options, longest_transition), recurring,
-                          options.least_sameness);
+        joined_activities(repetitive_segments(recurring, options, rate, longest_transition),
+                          recurring, options.least_sameness);
     std::vector<Segment> segments =
         with_transitions(activities, features, recurring, options, rate);
     refine_boundaries(segments, features, options, rate);

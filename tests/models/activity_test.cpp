@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "../../src/models/boundaries.h"
+#include "../../src/models/foreign_parts.h"
 #include "../../src/models/recurrence.h"
 #include "../../src/models/repetition_cuts.h"
 #include "../../src/models/sameness.h"
@@ -205,6 +206,34 @@ TEST_CASE("a short movement at the end of a take is an activity, not a transitio
     REQUIRE(segments.size() == 2);
     CHECK(segments[1].kind == SegmentKind::activity);
     CHECK(segments[1].cluster != segments[0].cluster);
+}
+
+TEST_CASE("what happens once does not hide behind what repeats little") {
+    const MatrixF rows = toy::Motion().circle(2, 60, 0).circle(1, 32, 4, 200).rows();
+    const Recurrence recurring = recurrence(toy::graph_of(rows), 40);
+    REQUIRE(repetition_cuts(recurring, 0.3).size() == 1);
+    const auto parts = without_foreign_parts(repetition_cuts(recurring, 0.3), recurring, {}, 30);
+    REQUIRE(parts.size() == 2);
+    CHECK(near(parts[0].frames.end, 120, 3));
+    CHECK(parts[0].repetitions == Approx(1).margin(0.1));
+    CHECK(parts[1].repetitions == Approx(0).margin(0.1));
+
+    const auto segments = activities_of(rows, ActivityMethod::repetition);
+    check_cover(segments, rows.rows());
+    CHECK(segments.front().cluster != segments.back().cluster);
+}
+
+TEST_CASE("neither what comes back nor what never repeats is cut for being foreign") {
+    const auto parts_of = [](const MatrixF& rows) {
+        const Recurrence recurring = recurrence(toy::graph_of(rows), 40);
+        const std::vector<ScoredSegment> one{{{0, rows.rows()}, 1}};
+        return without_foreign_parts(one, recurring, {}, 30).size();
+    };
+    CHECK(parts_of(toy::Motion().circle(3, 50, 0).rows()) == 1);
+    CHECK(parts_of(toy::Motion().circle(1, 50, 0).hold(20, 0).circle(1, 50, 0).rows()) == 1);
+    CHECK(parts_of(toy::Motion().raise(3, 60, 0).rows()) == 1);
+    CHECK(parts_of(toy::Motion().circle(1, 60, 0).circle(1, 60, 4, 200).rows()) == 1);
+    CHECK(parts_of(toy::Motion().circle(1, 59, 0).rows()) == 1);
 }
 
 TEST_CASE("a boundary is moved to where the frames are likest their own activities") {

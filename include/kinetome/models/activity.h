@@ -29,6 +29,8 @@ struct RepetitionOptions {
     double longest_hold = 4.0 / 3;  ///< frames that stay similar to one for up to so long before
                                     ///< and after it do not repeat it
     double segment_cost = 0.3;      ///< repetitions that one segment more must bring
+    double foreign = 0.1;   ///< parts of a segment that meet in fewer of their cycles are two …
+    double least_part = 1;  ///< … if both last as long as this
     double least_repetition = 0.5;    ///< of an activity that is no longer than a transition
     double least_sameness = 2.0 / 3;  ///< from which two activities are the same; 1 is what the
                                       ///< halves of one activity have
