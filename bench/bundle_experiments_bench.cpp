@@ -1,12 +1,14 @@
 // What S1 §3.6 and §5 say of motion bundles, tried on motion whose truth is known.
 //
-//   bundle_experiments_bench --experiment generated|kappa|noise|scale [--frames N] [--seeds N...]
+//   bundle_experiments_bench --experiment generated|kappa|noise|scale|whole [--frames N] [--seeds
+//   N...]
 //       [--starts N] [--threads N] [CORPUS]
 //       generated: purity, coverage and recall of repetitions with default options
 //       kappa: are left and right punches kept apart, by frames a cluster?
 //       noise: 0.1 σ on each degree of freedom, beside other starts of EM
 //       scale: time and memory of many subjects with letters of their own; CORPUS: more takes,
 //       NN/NN.asf and NN/NN_*.amc, as `kinetome generate --from` makes them
+//       whole: the same of one string; takes of CORPUS again and again, at other paces
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +25,7 @@
 #include "found_bundles.h"
 #include "generated_corpus.h"
 #include "kinetome/base/resources.h"
+#include "kinetome/synthesis/clip_variation.h"
 
 namespace {
 
@@ -269,6 +273,81 @@ void scale(const Options& options) {
     sums.print("with generated ones");
 }
 
+/// Takes of a folder, and the same at other paces until there are frames enough, spelled with the
+/// letters of the takes: as if one partition held them all.
+struct PacedCorpus {
+    Mixture mixture;
+    MotionString string;
+    std::vector<int64_t> frames;  ///< of the takes
+
+    PacedCorpus(const fs::path& corpus, int64_t wanted, uint64_t seed, int threads) {
+        const Workers workers{threads, nullptr};
+        std::vector<fs::path> files = bench::amc_files(corpus);
+        std::ranges::sort(files);
+        std::vector<Clip> clips;
+        std::vector<std::string> names;
+        for (const fs::path& file : files) {
+            clips.push_back(resample(bench::read_take(file), bench::pose_rate));
+            names.push_back(file.stem().string());
+        }
+        std::vector<int32_t> letters;
+        Pca pca;
+        {
+            const auto takes = bench::PoseTakes::of_clips(names, clips);
+            pca =
+                fit_pca(moments_of(takes.poses), takes.floors, PoseClusterOptions{}.variance_share);
+            const MatrixF projected = pca.project(takes.poses);
+            const MatrixRows rows(projected);
+            mixture = fit_pose_clusters(rows, {}, workers).fit.model;
+            letters = likeliest_clusters(mixture, rows, workers);
+            frames = takes.frames;
+        }
+        for (uint64_t take = 0; static_cast<int64_t>(letters.size()) < wanted; ++take) {
+            const Clip& clip = clips[take % clips.size()];
+            RandomStream random(seed, "paced corpus", take);
+            const Clip paced =
+                sample(clip, TimeWarp(clip.frames(), random).source_frames(), clip.rate);
+            const MatrixF projected =
+                pca.project(pose_vectors(*paced.skeleton, paced.motion, paced.rate));
+            const auto of_take = likeliest_clusters(mixture, MatrixRows(projected), workers);
+            letters.insert(letters.end(), of_take.begin(), of_take.end());
+            frames.push_back(paced.frames());
+        }
+        string = make_motion_string(letters, frames);
+    }
+};
+
+void whole(const Options& options) {
+    fmt::print("target: 2.5 million frames in 30 s and 4 GB\n");
+    const PacedCorpus corpus(options.corpus, options.frames_or(2'500'000), options.seeds.front(),
+                             options.threads);
+    const MotionStringOptions spelling;
+    const double tau = adjacent_distance(corpus.string, corpus.mixture, spelling.tau_quantile);
+    const int64_t lambda =
+        longest_substring(corpus.string, spelling.longest_submotion * bench::pose_rate);
+    fmt::print("{} frames in {} takes, {} clusters, {} letters, lambda {}; peak so far {}\n",
+               std::accumulate(corpus.frames.begin(), corpus.frames.end(), int64_t{0}),
+               corpus.frames.size(), corpus.mixture.clusters(), corpus.string.size(), lambda,
+               describe_bytes(peak_resident_bytes()));
+    const AccessibilityMatrix accessible = accessibility_for_bundles(
+        accessibility(corpus.mixture, tau, options.threads), corpus.string, corpus.mixture, {});
+    std::vector<SubstringBundle> first;
+    for (const uint64_t mebibytes : {16, 512}) {
+        std::vector<SubstringBundle> bundles;
+        const bench::Cost cost = bench::cost_of([&] {
+            bundles =
+                find_motion_bundles(corpus.string, accessible, lambda, {},
+                                    {.threads = options.threads, .table_bytes = mebibytes << 20U});
+        });
+        if (first.empty()) first = bundles;
+        fmt::print("tables of {:>3} MiB: {:.2f} s, {:.2f} cpu s, {} bundles, {}; peak {}\n",
+                   mebibytes, cost.wall, cost.cpu,
+                   std::ranges::count_if(bundles, [](const auto& one) { return one.height() > 1; }),
+                   bundles == first ? "the same" : "OTHERS", describe_bytes(peak_resident_bytes()));
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -283,11 +362,15 @@ int main(int argc, char** argv) {
         app.add_option("corpus", options.corpus);
         CLI11_PARSE(app, argc, argv);
         const std::map<std::string, void (*)(const Options&)> experiments = {
-            {"generated", generated}, {"kappa", kappa}, {"noise", noise}, {"scale", scale}};
+            {"generated", generated},
+            {"kappa", kappa},
+            {"noise", noise},
+            {"scale", scale},
+            {"whole", whole}};
         const auto chosen = experiments.find(options.experiment);
         if (chosen == experiments.end()) {
             throw UsageError("--experiment " + options.experiment +
-                             ": expected generated, kappa, noise or scale");
+                             ": expected generated, kappa, noise, scale or whole");
         }
         chosen->second(options);
         return 0;
