@@ -13,6 +13,7 @@
 #include "kinetome/formats/annotation.h"
 #include "kinetome/report/timeline_svg.h"
 #include "kinetome/stages/aligned_text.h"
+#include "kinetome/stages/bundle_compression.h"
 #include "kinetome/stages/evaluation.h"
 #include "kinetome/stages/hierarchy_evaluation.h"
 #include "kinetome/stages/open_store.h"
@@ -227,6 +228,7 @@ std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
         table = hierarchy_table(flags, input.generation(), workers);
     } else if (flags.what == "bundles") {
         table = bundle_score_table(stored_bundle_score(input.generation(), input.truth()));
+        append_compression(stored_bundle_compression(input.generation()), table);
     } else if (flags.what == "recurrence") {
         table = recurrence_table(stored_recurrence(input.generation()));
     } else if (flags.what == "primitives") {

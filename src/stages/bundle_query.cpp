@@ -1,8 +1,8 @@
 #include "kinetome/stages/bundle_query.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "kinetome/models/bundle_compression.h"
 #include "kinetome/models/signature_match.h"
 #include "kinetome/stages/node_blend.h"
 #include "kinetome/stages/stored_bundles.h"
@@ -20,12 +20,9 @@ double seconds_of(const ClipPrimitive& member, const ClipSource& source) {
 
 const ClipPrimitive& representative(const std::vector<ClipPrimitive>& members,
                                     const ClipSource& source) {
-    double mean = 0;
-    for (const ClipPrimitive& member : members) mean += seconds_of(member, source);
-    mean /= static_cast<double>(members.size());
-    return *std::ranges::min_element(members, {}, [&](const ClipPrimitive& member) {
-        return std::abs(seconds_of(member, source) - mean);
-    });
+    std::vector<double> seconds;
+    for (const ClipPrimitive& member : members) seconds.push_back(seconds_of(member, source));
+    return members[representative_of(seconds)];
 }
 
 /// Of query_table.

@@ -1,5 +1,7 @@
 // What `walk` and the export of its graph promise.
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -211,8 +213,35 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
         lines_of(require_program({"evaluate", store.path, "--what", "bundles", "--truth",
                                   store.output("takes/truth.csv"), "--format", "csv"})
                      .output);
-    CHECK(score.front() == "bundles,purity,shuffled,chance,coverage,mean_height,median_width");
-    CHECK(score.size() == 2);
+    CHECK(score.front() ==
+          "bundles,purity,shuffled,chance,coverage,mean_height,median_width,frames,kept_frames,"
+          "ratio,rms_mm,control_rms_mm,file_bytes,text_bytes");
+    REQUIRE(score.size() == 2);
+    // Of each bundle as many frames are kept as one member has.
+    std::vector<double> numbers;
+    std::istringstream cells(score[1]);
+    for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
+    std::map<std::string, std::vector<int64_t>> lengths_of;
+    for (size_t i = 1; i < rows.size(); ++i) {
+        std::vector<std::string> row;
+        std::istringstream text(rows[i]);
+        for (std::string cell; std::getline(text, cell, ',');) row.push_back(cell);
+        if (row.at(4) == "0") lengths_of[row[0]].push_back(std::stoll(row[3]) - std::stoll(row[2]));
+    }
+    int64_t least = 24000, most = 24000;
+    for (const auto& [bundle, all] : lengths_of) {
+        const int64_t sum = std::accumulate(all.begin(), all.end(), int64_t{0});
+        least -= sum - std::ranges::min(all);
+        most -= sum - std::ranges::max(all);
+    }
+    CHECK(numbers.at(7) == 24000);
+    CHECK(numbers.at(8) >= double(least));
+    CHECK(numbers.at(8) <= double(most));
+    CHECK(numbers.at(9) == Approx(numbers.at(7) / numbers.at(8)));
+    CHECK(numbers.at(10) > 0);
+    CHECK(numbers.at(10) < numbers.at(11));
+    CHECK(numbers.at(13) ==
+          double(require_program({"export", store.path, "bundles"}).output.size()));
 }
 
 namespace {
