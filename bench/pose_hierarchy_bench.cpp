@@ -2,7 +2,9 @@
 // columns? Poses are those of real takes at other paces, in other sizes and mirrored, made when
 // they are read, so that --memory is all there is for the model and for rows that are kept.
 //     pose_hierarchy_bench CORPUS [--frames N] [--columns 30,93,123] [--leaf-tolerance MM]
-//                          [--memory 1G] [--threads N] [--nodes-per-pass N]
+//                          [--memory 1G] [--threads N] [--nodes-per-pass N] [--check]
+// With --check each is grown again with another thread and small passes, and with half the memory,
+// so that rows are read anew; the program exits with 1 unless all are equal.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -122,22 +124,35 @@ struct Options {
     std::filesystem::path corpus;
     int64_t frames = 2'500'000, nodes_per_pass = 0;
     std::vector<int64_t> columns{30, 93, 123};
-    double leaf_tolerance = 45;
+    double leaf_tolerance = 40;  ///< some 300 frames a leaf, as in S2 §5.1
     std::string memory;
     int threads = 1;
+    bool check = false;
+
+    Resources resources() const {
+        std::optional<uint64_t> bytes;
+        if (!memory.empty()) bytes = parse_bytes(memory);
+        return granted_resources(threads, bytes);
+    }
 };
 
-void measure(const VariedPoses& poses, const Options& options, const Resources& resources) {
+/// Prints a line; returns the digest of the hierarchy.
+std::string measure(const VariedPoses& poses, const Options& options) {
+    constexpr double frame_rate = 120;
+    const Resources resources = options.resources();
     PoseHierarchyOptions growth;
     growth.leaf_tolerance = options.leaf_tolerance;
     const Workers workers(resources.threads);
     GrownHierarchy grown;
+    HierarchyMemory memory;
     size_t known = 0;
     const Cost cost = cost_of([&] {
         const auto principal = select_principal_markers(moments_of(poses, workers), {});
         known = principal.columns.size();
-        const HierarchyMemory memory = share_memory(
-            {poses.rows(), poses.columns(), static_cast<int64_t>(known)}, growth, resources, 1);
+        memory = share_memory({poses.rows(), poses.columns(), static_cast<int64_t>(known),
+                               static_cast<double>(poses.rows()) / frame_rate},
+                              growth, resources, 1);
+        if (options.nodes_per_pass > 0) memory.nodes_per_pass = options.nodes_per_pass;
         const KeptRows kept(
             poses.layout(), poses.columns(),
             [&](const RowRange& range) { return MatrixF(poses.read(range).view()); }, workers,
@@ -148,15 +163,31 @@ void measure(const VariedPoses& poses, const Options& options, const Resources& 
                 return kept.read(range).view()(Eigen::all, principal.columns);
             },
             workers, memory.principal_bytes);
-        grown = grow_pose_hierarchy(
-            kept, columns, principal.columns, growth, workers,
-            options.nodes_per_pass > 0 ? options.nodes_per_pass : memory.nodes_per_pass);
+        grown = grow_pose_hierarchy(kept, columns, principal.columns, growth, workers,
+                                    memory.nodes_per_pass);
     });
-    fmt::print("{:9} {:8} {:10} {:7} {:8.1f} {:8.1f} {:10.0f}  {}\n", poses.rows(), poses.columns(),
-               known, grown.hierarchy.leaves(), cost.cpu, cost.wall,
-               static_cast<double>(peak_resident_bytes()) / (1 << 20),
-               digest_of(packed(grown)).hex());
+    const std::string digest = digest_of(packed(grown)).hex();
+    fmt::print("{:9} {:8} {:10} {:7} {:8} {:6} {:6.0f} % {:8.1f} {:8.1f} {:9.0f}  {}\n",
+               poses.rows(), poses.columns(), known, grown.hierarchy.leaves(), resources.threads,
+               memory.nodes_per_pass,
+               100 * std::min(1.0, static_cast<double>(memory.pose_bytes) /
+                                       static_cast<double>(poses.rows() * poses.columns() * 4)),
+               cost.cpu, cost.wall, static_cast<double>(peak_resident_bytes()) / (1 << 20), digest);
     std::fflush(stdout);
+    return digest;
+}
+
+/// Whether other threads, other passes and rows read anew make the same hierarchy.
+bool is_same_otherwise(const VariedPoses& poses, const Options& options,
+                       const std::string& digest) {
+    Options other = options;
+    other.threads = options.threads + 1;
+    other.nodes_per_pass = 97;
+    bool same = measure(poses, other) == digest;
+    other = options;
+    other.nodes_per_pass = 1500;
+    other.memory = fmt::format("{}", options.resources().memory_bytes / 2);
+    return measure(poses, other) == digest && same;
 }
 
 }  // namespace
@@ -171,18 +202,25 @@ int main(int argc, char** argv) {
     app.add_option("--memory", options.memory, "bytes granted, such as 1G");
     app.add_option("--threads", options.threads, "threads")->capture_default_str();
     app.add_option("--nodes-per-pass", options.nodes_per_pass, "0: as memory allows");
+    app.add_flag("--check", options.check, "grow each again, otherwise, and compare");
     CLI11_PARSE(app, argc, argv);
     try {
-        const auto clips = read_clips(options.corpus);
-        const auto takes = markers_of(clips);
-        const auto names = marker_names(*clips.front().clip.skeleton);
-        std::optional<uint64_t> memory;
-        if (!options.memory.empty()) memory = parse_bytes(options.memory);
-        const Resources resources = granted_resources(options.threads, memory);
-        fmt::print("   frames  columns  principal  leaves    cpu s   wall s   peak MiB  digest\n");
+        std::vector<std::string> names;
+        const auto takes = [&] {
+            const auto clips = read_clips(options.corpus);
+            names = marker_names(*clips.front().clip.skeleton);
+            return markers_of(clips);
+        }();
+        fmt::print(
+            "   frames  columns  principal  leaves  threads  nodes  kept     cpu s   wall s  peak "
+            "MiB  digest\n");
+        bool same = true;
         for (const int64_t columns : options.columns) {
-            measure(VariedPoses(takes, names, options.frames, columns), options, resources);
+            const VariedPoses poses(takes, names, options.frames, columns);
+            const std::string digest = measure(poses, options);
+            if (options.check) same = is_same_otherwise(poses, options, digest) && same;
         }
+        return same ? 0 : 1;
     } catch (const Error& error) {
         fmt::print(stderr, "{}\n", error.what());
         return static_cast<int>(error.exit_code());

@@ -34,6 +34,7 @@ using bench::ExhaustiveWarp;
 using bench::MarkerTake;
 namespace fs = std::filesystem;
 
+constexpr double frame_rate = 120;
 constexpr int64_t stride = 4;          // 120 to 30 Hz
 constexpr int64_t query_frames = 240;  // 2 s
 constexpr int64_t answers = 10;
@@ -84,12 +85,12 @@ class Collection {
     }
 
     std::vector<IndexedMatch> by_signature(const Query& query, int64_t k) const {
-        return index_.search(placed(query.markers, hierarchy_, axes_), k, {});
+        return matches(query, k, true);
     }
 
     std::vector<IndexedMatch> by_signature_and_rerank(const Query& query, int64_t k) const {
-        auto matches = by_signature(query, reranked);
-        for (IndexedMatch& match : matches) {
+        auto found = matches(query, reranked, false);
+        for (IndexedMatch& match : found) {
             match.match.frames = {match.match.frames.first / stride,
                                   (match.match.frames.end + stride - 1) / stride};
         }
@@ -98,8 +99,7 @@ class Collection {
         };
         RerankOptions options;
         options.stride = 1;
-        auto found =
-            rerank_matches(features(query.markers), matches, feature_rows_, k, read, options, 1);
+        found = rerank_matches(features(query.markers), found, feature_rows_, k, read, options, 1);
         for (IndexedMatch& match : found) {
             match.match.frames = {match.match.frames.first * stride,
                                   match.match.frames.end * stride};
@@ -122,18 +122,24 @@ class Collection {
     }
 
   private:
+    std::vector<IndexedMatch> matches(const Query& query, int64_t k, bool to_the_frame) const {
+        SignatureSearchOptions options;
+        options.to_the_frame = to_the_frame;
+        return index_.search(placed(query.markers, hierarchy_, axes_, 1), k, options);
+    }
+
     static SignatureIndex index_of(const std::vector<MarkerTake>& takes,
                                    const PoseHierarchy& hierarchy, const MatrixF& axes,
                                    int threads) {
         std::vector<PlacedSignature> signatures(takes.size());
         tbb::parallel_for(size_t(0), takes.size(), [&](size_t i) {
-            signatures[i] = placed(takes[i].markers, hierarchy, axes);
+            signatures[i] = placed(takes[i].markers, hierarchy, axes, sample_stride(frame_rate));
         });
         return SignatureIndex(signatures, positions_of(hierarchy.means, axes), {}, threads);
     }
     static PlacedSignature placed(const MatrixF& markers, const PoseHierarchy& hierarchy,
-                                  const MatrixF& axes) {
-        return place_signature(make_signature(leaves_of(hierarchy, markers)), markers, axes);
+                                  const MatrixF& axes, int32_t apart) {
+        return place_signature(make_signature(leaves_of(hierarchy, markers)), markers, axes, apart);
     }
 
     const PoseHierarchy& hierarchy_;

@@ -38,7 +38,8 @@ std::vector<IndexedMatch> moved(const MatrixF& query, int64_t query_frames,
     const auto nearest = std::ranges::min_element(paths, {}, &WarpPath::mean);
     if (nearest == paths.end()) return {};
     const int64_t first = frames.first + nearest->cells.front().second;
-    const int64_t end = frames.first + nearest->cells.back().second + options.stride;
+    const int64_t behind_last = (query_frames - 1) % options.stride + 1;
+    const int64_t end = frames.first + nearest->cells.back().second + behind_last;
     return {{match.clip, {{first, std::min(end, clip_frames)}, nearest->mean}}};
 }
 

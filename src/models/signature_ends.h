@@ -10,10 +10,9 @@
 
 namespace kinetome {
 
-/// Every frame that is compared is aligned, WarpWeight::first and slope_limited_steps (warp.h).
-std::vector<SignatureMatch> paced_ends(std::span<const SignatureRun> query,
-                                       std::span<const SignatureRun> text,
-                                       const MatrixFView& distances, int32_t step);
+/// Every row of the distances is aligned, WarpWeight::first and slope_limited_steps (warp.h); a
+/// column is `step` frames of the text.
+std::vector<SignatureMatch> paced_ends(const MatrixFView& distances, int32_t step);
 
 /// Run by run.
 std::vector<SignatureMatch> run_ends(std::span<const SignatureRun> query,

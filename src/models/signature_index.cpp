@@ -3,24 +3,46 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "kinetome/base/parallel.h"
+#include "signature_moments.h"
 #include "signature_places.h"
 
 namespace kinetome {
 namespace {
 
-void check_shape(const PlacedSignature& signature, int64_t columns) {
-    const auto runs = static_cast<int64_t>(signature.runs.size());
-    const MatrixF& positions = signature.positions;
-    if (runs == 0 || (positions.rows() == runs && positions.cols() == columns)) return;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+void check_shape(const MatrixF& positions, int64_t rows, int64_t columns, const char* what) {
+    if (rows == 0 || (positions.rows() == rows && positions.cols() == columns)) return;
     throw std::invalid_argument(
-        fmt::format("{} × {} positions were given for a signature of {} runs, of {} values each",
-                    positions.rows(), positions.cols(), runs, columns));
+        fmt::format("{} × {} positions were given for a signature of {} {}, of {} values each",
+                    positions.rows(), positions.cols(), rows, what, columns));
+}
+
+void check_shape(const PlacedSignature& signature, int64_t columns) {
+    check_shape(signature.positions, std::ssize(signature.runs), columns, "runs");
+    check_shape(signature.sample_positions, signature.samples().count(), columns, "samples");
+}
+
+/// Of the samples of all clips. Throws std::invalid_argument when they differ.
+int32_t common_stride(const std::vector<PlacedSignature>& clips) {
+    std::optional<int32_t> stride;
+    for (const PlacedSignature& clip : clips) {
+        if (clip.runs.empty()) continue;
+        if (stride.value_or(clip.stride) != clip.stride) {
+            throw std::invalid_argument("signatures are sampled at different strides");
+        }
+        stride = clip.stride;
+    }
+    return stride.value_or(1);
 }
 
 ValueLists<SignatureRun> joined_runs(const std::vector<PlacedSignature>& clips) {
@@ -32,21 +54,18 @@ ValueLists<SignatureRun> joined_runs(const std::vector<PlacedSignature>& clips) 
     return lists;
 }
 
-/// Throws std::invalid_argument unless every run has one, all of `columns` values.
-MatrixF joined_positions(const std::vector<PlacedSignature>& clips, int64_t columns) {
-    int64_t runs = 0;
-    for (const PlacedSignature& clip : clips) {
-        check_shape(clip, columns);
-        runs += static_cast<int64_t>(clip.runs.size());
-    }
-    MatrixF positions(runs, columns);
+MatrixF joined_rows(const std::vector<PlacedSignature>& clips, MatrixF PlacedSignature::*rows_of,
+                    int64_t columns) {
+    int64_t count = 0;
+    for (const PlacedSignature& clip : clips) count += (clip.*rows_of).rows();
+    MatrixF joined(count, columns);
     int64_t next = 0;
     for (const PlacedSignature& clip : clips) {
-        if (clip.runs.empty()) continue;
-        positions.middleRows(next, clip.positions.rows()) = clip.positions;
-        next += clip.positions.rows();
+        const MatrixF& rows = clip.*rows_of;
+        if (rows.rows() > 0) joined.middleRows(next, rows.rows()) = rows;
+        next += rows.rows();
     }
-    return positions;
+    return joined;
 }
 
 ValueLists<int32_t> occurrences_of(const std::vector<SignatureRun>& runs, int64_t leaves) {
@@ -121,27 +140,14 @@ void check(const SignatureIndex::Parts& parts) {
     const auto leaf_of_run = [](const SignatureRun& run) { return run.leaf; };
     const auto leaf_of_near = [](const NearLeaf& near) { return near.leaf; };
     if (is_whole(parts.clips) && is_whole(parts.occurrences) && is_whole(parts.near_leaves) &&
-        parts.occurrences.size() == leaves && parts.positions.rows() == runs &&
+        parts.occurrences.size() == leaves && parts.positions.rows() == runs && parts.stride > 0 &&
+        parts.positions.allFinite() && parts.sample_positions.allFinite() &&
         all_below(parts.clips.values, leaves, leaf_of_run) &&
         all_below(parts.occurrences.values, runs, std::identity()) &&
         all_below(parts.near_leaves.values, leaves, leaf_of_near)) {
         return;
     }
     throw std::invalid_argument("these are not the parts of a signature index");
-}
-
-/// Between positions (n × r and m × r), n × m.
-MatrixF distances_between(const MatrixFView& query, const MatrixFView& text) {
-    const MatrixF columns = text.transpose();  // values of one kind side by side, for vector units
-    MatrixF distances = MatrixF::Zero(query.rows(), text.rows());
-    for (Eigen::Index i = 0; i < query.rows(); ++i) {
-        auto row = distances.row(i).array();
-        for (Eigen::Index k = 0; k < query.cols(); ++k) {
-            row += (columns.row(k).array() - query(i, k)).square();
-        }
-        row = row.sqrt();
-    }
-    return distances;
 }
 
 bool is_before(const IndexedMatch& a, const IndexedMatch& b) {
@@ -169,9 +175,13 @@ std::vector<IndexedMatch> nearest_matches(std::vector<IndexedMatch> matches, int
 SignatureIndex::SignatureIndex(const std::vector<PlacedSignature>& clips,
                                const MatrixF& leaf_positions, const SignatureIndexOptions& options,
                                int threads) {
+    const int64_t columns = leaf_positions.cols();
+    for (const PlacedSignature& clip : clips) check_shape(clip, columns);
     Parts parts;
     parts.clips = joined_runs(clips);
-    parts.positions = joined_positions(clips, leaf_positions.cols());
+    parts.positions = joined_rows(clips, &PlacedSignature::positions, columns);
+    parts.stride = common_stride(clips);
+    parts.sample_positions = joined_rows(clips, &PlacedSignature::sample_positions, columns);
     parts.occurrences = occurrences_of(parts.clips.values, leaf_positions.rows());
     parts.near_leaves = near_leaves(leaf_positions, options, threads);
     parts.reach = options.reach;
@@ -181,38 +191,89 @@ SignatureIndex::SignatureIndex(const std::vector<PlacedSignature>& clips,
 SignatureIndex::SignatureIndex(Parts parts) : parts_(std::move(parts)) {
     check(parts_);
     clip_of_run_.reserve(parts_.clips.values.size());
+    first_sample_.push_back(0);
     for (int64_t clip = 0; clip < parts_.clips.size(); ++clip) {
-        clip_of_run_.insert(clip_of_run_.end(), parts_.clips[clip].size(),
-                            static_cast<int32_t>(clip));
+        const auto number = static_cast<int32_t>(clip);
+        clip_of_run_.insert(clip_of_run_.end(), parts_.clips[clip].size(), number);
+        first_sample_.push_back(first_sample_.back() + samples(number).count());
     }
+    if (first_sample_.back() != parts_.sample_positions.rows()) {
+        throw std::invalid_argument("these are not the samples of a signature index");
+    }
+}
+
+FrameSamples SignatureIndex::samples(int32_t clip) const {
+    return {frame_count(parts_.clips[clip]), parts_.stride};
+}
+
+MotionView SignatureIndex::motion(int32_t clip) const {
+    const auto number = static_cast<size_t>(clip);
+    const FrameSamples of_clip = samples(clip);
+    return {parts_.clips[clip],
+            parts_.positions.middleRows(parts_.clips.first[number], std::ssize(parts_.clips[clip])),
+            of_clip, parts_.sample_positions.middleRows(first_sample_[number], of_clip.count())};
 }
 
 std::vector<IndexedMatch> SignatureIndex::search(const PlacedSignature& query, int64_t k,
                                                  const SignatureSearchOptions& options) const {
     if (query.runs.empty() || parts_.clips.values.empty()) return {};
     check_shape(query, parts_.positions.cols());
-    auto matches =
-        options.match.tolerance > 0 ? near_matches(query, options) : exact_matches(query.runs);
-    return nearest_matches(std::move(matches), k, options.match.overlap);
+    const auto matches = [&] {
+        if (options.match.tolerance <= 0) return exact_matches(query.runs);
+        if (options.match.rule == MatchRule::pace) return matches_by_pace(query, k, options);
+        return matches_by_runs(query, options);
+    };
+    return nearest_matches(matches(), k, options.match.overlap);
 }
 
-std::vector<IndexedMatch> SignatureIndex::near_matches(
-    const PlacedSignature& query, const SignatureSearchOptions& options) const {
-    SignatureMatchOptions match_options = options.match;
+std::vector<IndexedMatch> SignatureIndex::matches_by_pace(const PlacedSignature& query, int64_t k,
+                                                          SignatureSearchOptions options) const {
+    const int64_t frames = query.samples().frames;
     // A short query is compared as often as one of a few seconds.
-    constexpr int32_t samples = 30;
-    match_options.step = std::clamp(frame_count(query.runs) / samples, 1, options.match.step);
+    constexpr int64_t moments = 30;
+    const auto step =
+        static_cast<int32_t>(std::clamp<int64_t>(frames / moments, 1, options.match.step));
+    options.match.step = step;
+    const double tolerance = std::exchange(options.match.tolerance, infinite);
+    const int64_t rows = std::max<int64_t>(1, std::llround(double(frames) / step));
+    const double spacing = double(frames) / double(rows);
+    const Moments asked{(spacing - 1) / 2, spacing, rows};
     std::vector<IndexedMatch> matches;
     for (const SignaturePlace& place : likely_places(parts_, clip_of_run_, query.runs, options)) {
-        const int64_t first = place.frames.first / match_options.step * match_options.step;
+        const int64_t first = place.frames.first / step * step;
+        const Moments there{double(first) + step / 2, double(step),
+                            (place.frames.end - first) / step};
+        const MatrixF distances =
+            distances_between(view_of(query), asked, motion(place.clip), there, frames / 4);
+        for (SignatureMatch match : match_paces(frames, distances, options.match)) {
+            match.frames = {first + match.frames.first, first + match.frames.end};
+            matches.push_back({place.clip, match});
+        }
+    }
+    if (options.to_the_frame) {
+        constexpr int64_t moved = 8;  // at least: the query itself is among so many
+        matches = nearest_matches(std::move(matches), std::max(k, moved), options.match.overlap);
+        for (IndexedMatch& one : matches) {
+            one.match = at_own_pace(one.match, view_of(query), motion(one.clip), step);
+        }
+    }
+    std::erase_if(matches, [&](const auto& one) { return one.match.distance > tolerance; });
+    return matches;
+}
+
+std::vector<IndexedMatch> SignatureIndex::matches_by_runs(
+    const PlacedSignature& query, const SignatureSearchOptions& options) const {
+    std::vector<IndexedMatch> matches;
+    for (const SignaturePlace& place : likely_places(parts_, clip_of_run_, query.runs, options)) {
+        const int64_t first = place.frames.first;
         const auto clip = parts_.clips[place.clip];
-        const Signature text = part_of(clip, {first, place.frames.end});
+        const Signature text = part_of(clip, place.frames);
         const int64_t first_run =
             parts_.clips.first[static_cast<size_t>(place.clip)] + run_at(clip, first);
         const MatrixF distances = distances_between(
             query.positions,
             parts_.positions.middleRows(first_run, static_cast<Eigen::Index>(text.size())));
-        for (SignatureMatch match : match_signature(query.runs, text, distances, match_options)) {
+        for (SignatureMatch match : match_runs(query.runs, text, distances, options.match)) {
             match.frames = {first + match.frames.first, first + match.frames.end};
             matches.push_back({place.clip, match});
         }

@@ -11,19 +11,6 @@
 namespace kinetome {
 namespace {
 
-void check(std::span<const SignatureRun> query, std::span<const SignatureRun> text,
-           const MatrixFView& distances, const SignatureMatchOptions& options) {
-    if (distances.rows() != static_cast<int64_t>(query.size()) ||
-        distances.cols() != static_cast<int64_t>(text.size())) {
-        throw std::invalid_argument(
-            fmt::format("{} × {} distances were given for signatures of {} and {} runs",
-                        distances.rows(), distances.cols(), query.size(), text.size()));
-    }
-    if (options.step < 1) {
-        throw std::invalid_argument("signatures are compared at steps of at least one frame");
-    }
-}
-
 /// The nearest, then the nearest of those that are elsewhere, and so on.
 std::vector<SignatureMatch> without_overlaps(std::vector<SignatureMatch> matches, double overlap) {
     std::ranges::sort(matches, std::less<>());
@@ -35,6 +22,18 @@ std::vector<SignatureMatch> without_overlaps(std::vector<SignatureMatch> matches
         if (!known) kept.push_back(match);
     }
     return kept;
+}
+
+/// Those that are near enough and neither too long nor too short, without overlaps.
+std::vector<SignatureMatch> chosen(std::vector<SignatureMatch> matches, int64_t query_frames,
+                                   const SignatureMatchOptions& options) {
+    const auto frames = static_cast<double>(query_frames);
+    std::erase_if(matches, [&](const SignatureMatch& match) {
+        const auto length = double(match.frames.size());
+        return !(match.distance <= options.tolerance) || length < options.shortest * frames ||
+               length > options.longest * frames;
+    });
+    return without_overlaps(std::move(matches), options.overlap);
 }
 
 }  // namespace
@@ -49,22 +48,30 @@ bool is_same_place(const RowRange& a, const RowRange& b, double overlap) {
     return shared > 0 && double(shared) > overlap * double(std::min(a.size(), b.size()));
 }
 
-std::vector<SignatureMatch> match_signature(std::span<const SignatureRun> query,
-                                            std::span<const SignatureRun> text,
-                                            const MatrixFView& distances,
-                                            const SignatureMatchOptions& options) {
-    check(query, text, distances, options);
+std::vector<SignatureMatch> match_runs(std::span<const SignatureRun> query,
+                                       std::span<const SignatureRun> text,
+                                       const MatrixFView& distances,
+                                       const SignatureMatchOptions& options) {
+    if (options.rule == MatchRule::pace) {
+        throw std::invalid_argument("runs are not compared frame by frame");
+    }
+    if (distances.rows() != static_cast<int64_t>(query.size()) ||
+        distances.cols() != static_cast<int64_t>(text.size())) {
+        throw std::invalid_argument(
+            fmt::format("{} × {} distances were given for signatures of {} and {} runs",
+                        distances.rows(), distances.cols(), query.size(), text.size()));
+    }
     if (query.empty() || text.empty()) return {};
-    auto matches = options.rule == MatchRule::pace
-                       ? paced_ends(query, text, distances, options.step)
-                       : run_ends(query, text, distances, options);
-    const double frames = frame_count(query);
-    std::erase_if(matches, [&](const SignatureMatch& match) {
-        const auto length = double(match.frames.size());
-        return !(match.distance <= options.tolerance) || length < options.shortest * frames ||
-               length > options.longest * frames;
-    });
-    return without_overlaps(std::move(matches), options.overlap);
+    return chosen(run_ends(query, text, distances, options), frame_count(query), options);
+}
+
+std::vector<SignatureMatch> match_paces(int64_t query_frames, const MatrixFView& distances,
+                                        const SignatureMatchOptions& options) {
+    if (options.step < 1) {
+        throw std::invalid_argument("signatures are compared at steps of at least one frame");
+    }
+    if (distances.size() == 0) return {};
+    return chosen(paced_ends(distances, options.step), query_frames, options);
 }
 
 std::vector<int64_t> exact_matches(std::span<const SignatureRun> query,

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "signature_ends.h"
 
@@ -8,19 +8,6 @@ namespace kinetome {
 namespace {
 
 constexpr float unreachable = std::numeric_limits<float>::infinity();
-
-/// Runs of a signature at the frames that are compared.
-std::vector<int32_t> sampled_runs(std::span<const SignatureRun> signature, int64_t samples,
-                                  double spacing) {
-    std::vector<int32_t> runs(static_cast<size_t>(samples));
-    int32_t run = 0;
-    for (int64_t i = 0; i < samples; ++i) {
-        const auto frame = static_cast<int64_t>((static_cast<double>(i) + 0.5) * spacing);
-        while (signature[static_cast<size_t>(run)].end_frame() <= frame) ++run;
-        runs[static_cast<size_t>(i)] = run;
-    }
-    return runs;
-}
 
 /// One row of the table, with room for steps that come from before its first column.
 struct TableRow {
@@ -50,30 +37,21 @@ void come_by(TableRow& from, int64_t columns, float weight, const float* distanc
     }
 }
 
-/// The table of the frames compared, query row after query row.
+/// The table of moments of the query and of the text, row after row.
 class PacedTable {
   public:
-    PacedTable(std::vector<int32_t> text_runs, const MatrixFView& distances)
-        : text_runs_(std::move(text_runs)),
-          distances_(distances),
-          at_run_(text_runs_.size()),
-          rows_(3, TableRow(columns())) {}
+    explicit PacedTable(int64_t columns) : columns_(columns), rows_(3, TableRow(columns)) {}
 
-    int64_t columns() const { return static_cast<int64_t>(text_runs_.size()); }
-
-    void advance(int32_t query_run) {
-        measure(query_run);
+    void advance(const float* distances) {
         TableRow& row = row_before(0);
-        std::fill_n(row.total(), columns(), unreachable);
+        std::fill_n(row.total(), columns_, unreachable);
         if (row_ == 0) {
-            for (int64_t j = 0; j < columns(); ++j) {
-                row.total()[j] = at_run_[static_cast<size_t>(j)];
-                row.begin()[j] = static_cast<int32_t>(j);
-            }
+            std::copy_n(distances, columns_, row.total());
+            std::iota(row.begin(), row.begin() + columns_, 0);
         } else {
-            come_by(row_before(1), 1, 1, at_run_.data(), row, columns());
-            come_by(row_before(1), 2, 1, at_run_.data(), row, columns());
-            if (row_ > 1) come_by(row_before(2), 1, 2, at_run_.data(), row, columns());
+            come_by(row_before(1), 1, 1, distances, row, columns_);
+            come_by(row_before(1), 2, 1, distances, row, columns_);
+            if (row_ > 1) come_by(row_before(2), 1, 2, distances, row, columns_);
         }
         ++row_;
     }
@@ -84,40 +62,24 @@ class PacedTable {
   private:
     TableRow& row_before(int64_t rows) { return rows_[static_cast<size_t>((row_ + 3 - rows) % 3)]; }
 
-    /// Distances along a row are those of its run: often the same as along the row before.
-    void measure(int32_t query_run) {
-        if (query_run == measured_) return;
-        measured_ = query_run;
-        const float* const row = distances_.data() + query_run * distances_.outerStride();
-        for (size_t j = 0; j < text_runs_.size(); ++j) at_run_[j] = row[text_runs_[j]];
-    }
-
-    std::vector<int32_t> text_runs_;
-    MatrixFView distances_;
-    std::vector<float> at_run_;  ///< from the query run at hand, by column
+    int64_t columns_;
     std::vector<TableRow> rows_;
-    int32_t measured_ = -1;
     int64_t row_ = 0;
 };
 
 }  // namespace
 
-std::vector<SignatureMatch> paced_ends(std::span<const SignatureRun> query,
-                                       std::span<const SignatureRun> text,
-                                       const MatrixFView& distances, int32_t step) {
-    const int64_t frames = frame_count(query), text_frames = frame_count(text);
-    const int64_t rows = std::max<int64_t>(1, std::llround(double(frames) / step));
-    const int64_t columns = text_frames / step;
-    PacedTable table(sampled_runs(text, columns, step), distances);
-    for (const int32_t run : sampled_runs(query, rows, double(frames) / double(rows))) {
-        table.advance(run);
+std::vector<SignatureMatch> paced_ends(const MatrixFView& distances, int32_t step) {
+    PacedTable table(distances.cols());
+    for (Eigen::Index i = 0; i < distances.rows(); ++i) {
+        table.advance(distances.data() + i * distances.outerStride());
     }
     std::vector<SignatureMatch> ends;
-    for (int64_t j = 0; j < columns; ++j) {
+    for (int64_t j = 0; j < distances.cols(); ++j) {
         const float total = table.latest().total()[j];
         if (total == unreachable) continue;
         ends.push_back({{int64_t{table.latest().begin()[j]} * step, (j + 1) * step},
-                        double(total) / double(rows)});
+                        double(total) / double(distances.rows())});
     }
     return ends;
 }

@@ -123,13 +123,16 @@ uint64_t signatures_bytes(const CorpusShape& corpus, const ReindexOptions& optio
     for (const HierarchyShape& shape : hierarchy_shapes(corpus, options)) {
         const int64_t leaves = expected_leaves(shape.size, options.pose_hierarchy);
         const int64_t runs = shape.size.rows / typical_run_frames + 1;
+        const int64_t samples =
+            shape.size.rows / sample_stride(options.features.pose_rate) + shape.clips;
         const int64_t axes = signature_axis_count(shape.size.columns);
         // Those within reach are some twelfth of the leaves of few takes.
         const int64_t near = leaves * std::min<int64_t>(leaves / 12, index_options.near_leaves);
         bytes += Group()
-                     .rows(1, {number, number})
+                     .rows(1, {number, number, index})
                      .rows(shape.clips, {number, name, number, number, number, number})
                      .rows(shape.size.columns, {axes * value})
+                     .rows(samples, {axes * value})
                      .rows(runs, {index, index, index, axes * value, index})
                      .rows(leaves, {number, number})
                      .rows(near, {index, value})

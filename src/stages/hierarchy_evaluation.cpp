@@ -35,6 +35,11 @@ MatrixF poses_where(const MarkerTakes& takes, const std::vector<bool>& held, boo
     return takes.poses(rows, Eigen::all);
 }
 
+/// Of an error in another one; none where there is none to compare with.
+Table::Cell share_of(double error, double of) {
+    return of > 0 ? Table::Cell(error / of) : Table::Cell(std::string());
+}
+
 void add_estimation(Table& table, const MarkerTakes& takes, HeldOut way,
                     const HierarchyEvaluationOptions& options, const Workers& workers) {
     HeldOutOptions choice{.what = way};
@@ -52,7 +57,7 @@ void add_estimation(Table& table, const MarkerTakes& takes, HeldOut way,
         table.rows.push_back(
             {takes.clip_class, word_of(way), static_cast<int64_t>(scores.principal.markers.size()),
              scores.leaves, scores.training, scores.tested, score.method, score.rms, score.share_95,
-             score.greatest, score.rms / linear, score.rms / nearest});
+             score.greatest, share_of(score.rms, linear), share_of(score.rms, nearest)});
     }
 }
 

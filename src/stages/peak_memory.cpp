@@ -138,8 +138,11 @@ uint64_t signature_bytes(const CorpusShape& corpus, const ReindexOptions& option
         // Twice: those of each clip are brought together.
         const int64_t position_bytes =
             2 * signature_axis_count(shape.size.columns) * int64_t{sizeof(float)};
+        const int64_t samples =
+            shape.size.rows / sample_stride(options.features.pose_rate) + shape.clips;
         indices += static_cast<uint64_t>(
             shape.size.rows / typical_run_frames * (bytes_per_run + position_bytes) +
+            samples * position_bytes +
             leaves * (index_options.near_leaves * bytes_per_near_leaf + position_bytes));
     }
     return model + indices + pipeline_bytes("signatures", corpus, options, resources);

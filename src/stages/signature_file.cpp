@@ -16,6 +16,7 @@ namespace kinetome {
 namespace {
 
 const std::string rate_path = "/pose_rate";
+const std::string samples_path = "/samples/position";
 
 /// Datasets of one class.
 class GroupWriter {
@@ -110,6 +111,8 @@ SignatureIndex::Parts read_parts(const ArtifactReader& file, const std::string& 
         parts.clips.values.push_back({leaves[i], firsts[i], frames[i]});
     }
     parts.positions = file.read_matrix(at("runs/position"));
+    parts.stride = file.read<int32_t>(at("samples/stride")).at(0);
+    parts.sample_positions = file.read_matrix(at("samples/position"));
     parts.occurrences.first = first_of_each(file.read<int64_t>(at("leaves/occurrences")));
     parts.occurrences.values = file.read<int32_t>(at("occurrences/run"));
     parts.near_leaves.first = first_of_each(file.read<int64_t>(at("leaves/near_leaves")));
@@ -150,6 +153,10 @@ void write_signatures(ArtifactWriter& file, const std::string& group,
     out.write_rows("runs/position", "mm",
                    "Euclidean distances are those between mean poses, per marker", "",
                    parts.positions);
+    out.write<int32_t>("samples/stride", "frames", "from one sample of a clip to the next", "",
+                       {parts.stride});
+    out.write_rows("samples/position", "mm", "likewise of poses, clip after clip", "",
+                   parts.sample_positions);
     out.write<int64_t>("leaves/occurrences", "1", "runs of the leaf", "S2 §5.3",
                        lengths_of(parts.occurrences));
     out.write<int32_t>("occurrences/run", "1", "rows of runs, leaf after leaf", "S2 §5.3",
@@ -168,6 +175,12 @@ ClassSignatures read_signatures(const ArtifactReader& file, const std::string& g
     if (!file.contains(group + rate_path)) {
         throw StoreError(fmt::format("{} holds no signatures of class {}",
                                      path_for_message(file.path().string()), group.substr(1)));
+    }
+    if (!file.contains(group + samples_path)) {
+        throw StoreError(
+            fmt::format("{} was made by an earlier version of kinetome, without what queries are "
+                        "compared by; kinetome reindex makes it again",
+                        path_for_message(file.path().string())));
     }
     try {
         return {file.read<double>(group + rate_path).at(0), read_clips(file, group),

@@ -21,7 +21,6 @@ namespace {
 
 constexpr int64_t reranked = 60;    // matches that are looked at again
 constexpr double rerank_rate = 30;  // frames a second
-constexpr double pace_rate = 15;    // likewise, at which leaves are compared by MatchRule::pace
 
 MatrixF in_mm_per_marker(const MatrixF& markers) {
     constexpr double mm_per_cm = 10;
@@ -102,7 +101,7 @@ Asked asked_clip(const Generation& generation, const SignatureQuery& query) {
                                              clip->source_rate, signatures.pose_rate, clip->frames);
         MatrixF markers = MarkerShards(generation, query.clip).read(query.clip, frames);
         PlacedSignature signature = place_signature(
-            part_of(signatures.index.signature(number), frames), markers, signatures.axes);
+            part_of(signatures.index.signature(number), frames), markers, signatures.axes, 1);
         return {std::move(signatures), std::move(signature), std::move(markers)};
     }
     throw UsageError(
@@ -128,15 +127,15 @@ Asked asked_take(const Generation& generation, const SignatureQuery& query) {
     MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, joint_positions(clip))
                           .middleRows(frames.first, frames.size());
     PlacedSignature signature =
-        place_signature(make_signature(leaves_of(hierarchy, markers)), markers, signatures.axes);
+        place_signature(make_signature(leaves_of(hierarchy, markers)), markers, signatures.axes, 1);
     return {std::move(signatures), std::move(signature), std::move(markers)};
 }
 
 std::vector<IndexedMatch> nearest_by_signature(const Asked& asked, const SignatureQuery& query,
                                                int64_t k) {
     SignatureSearchOptions options = query.search;
-    options.match.step = static_cast<int32_t>(
-        std::max<int64_t>(1, std::llround(asked.signatures.pose_rate / pace_rate)));
+    options.to_the_frame = !query.rerank;  // which moves them itself
+    options.match.step = asked.signatures.index.parts().stride;
     return asked.signatures.index.search(asked.signature, k, options);
 }
 

@@ -27,6 +27,8 @@ void pack(Packer& out, const SignatureShare& share) {
             out.put(run.leaf).put(run.first_frame).put(run.frames);
         }
         pack(out, signature.positions);
+        out.put(signature.stride);
+        pack(out, signature.sample_positions);
     }
 }
 
@@ -41,6 +43,8 @@ void unpack(Unpacker& in, SignatureShare& share) {
             }
         }
         unpack(in, signature.positions);
+        unpack(in, signature.stride);
+        unpack(in, signature.sample_positions);
     }
 }
 
@@ -58,6 +62,7 @@ SignatureShare share_of_rank(const StageContext& context, const PosePartition& p
         longest = std::max(longest, frames[i]);
     }
     share.signatures.resize(share.clips.size());
+    const int32_t stride = sample_stride(partition.feature_class().pose_rate);
     const auto clip_bytes = static_cast<uint64_t>(longest * hierarchy.columns()) * sizeof(float);
     size_t next = 0;
     run_clip_pipeline<const size_t>(
@@ -70,8 +75,8 @@ SignatureShare share_of_rank(const StageContext& context, const PosePartition& p
             const RowRange rows{clip.first_row, clip.first_row + clip.place.pose_rows};
             if (rows.size() == 0) return;
             const MatrixF markers = partition.read_markers(rows);
-            share.signatures[i] =
-                place_signature(make_signature(leaves_of(hierarchy, markers)), markers, axes);
+            share.signatures[i] = place_signature(make_signature(leaves_of(hierarchy, markers)),
+                                                  markers, axes, stride);
         },
         [](size_t) {});
     return share;

@@ -55,7 +55,7 @@ const std::vector<StageRow>& stage_table() {
         {.name = "signatures",
          .inputs = {"features", "pose_hierarchy"},
          .sharded = false,
-         .format_version = 2,
+         .format_version = 3,
          .description = "takes as the leaves they pass through, and their index (S2 §5.3)",
          .make = make_signatures},
         {.name = "neighbors",

@@ -54,6 +54,16 @@ TEST_CASE("two matches that move to one place become one") {
     CHECK(found[0].match == SignatureMatch{{200, 320}, 0});
 }
 
+TEST_CASE("a motion that is no whole number of strides is found to the frame") {
+    const Clips clips;
+    for (const int64_t frames : {117, 118, 119, 121}) {
+        const MatrixF query = clips.rows[1].middleRows(401, frames);
+        const auto found = clips.rerank(query, {{1, {{392, 528}, 1}}});
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].match == SignatureMatch{{401, 401 + frames}, 0});
+    }
+}
+
 TEST_CASE("matches at the ends of a clip stay inside it") {
     const Clips clips;
     const MatrixF query = clips.rows[0].middleRows(480, 118);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "kinetome/base/random.h"
@@ -78,7 +80,7 @@ TEST_CASE("poses of few columns have as many axes") {
     CHECK((positions.row(0) - positions.row(1)).norm() == Approx(50));
 }
 
-TEST_CASE("runs lie where the means of their poses do") {
+TEST_CASE("runs lie where the means of their poses do, samples where their own") {
     MatrixF poses = MatrixF::Zero(3, 9);
     poses.row(1) << 0, 0, 0, 2, 0, 0, 0, 0, 2;
     poses.row(2) << 0, 0, 0, 9, 9, 9, 9, 9, 9;
@@ -86,8 +88,65 @@ TEST_CASE("runs lie where the means of their poses do") {
     MatrixD means(2, 9);
     means << 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 9, 9, 9, 9, 9, 9;
     const MatrixF axes = MatrixF::Identity(9, 9);
-    const PlacedSignature placed = place_signature(runs, poses, axes);
+    const PlacedSignature placed = place_signature(runs, poses, axes, 2);
     CHECK(placed.runs == runs);
     CHECK(placed.positions == means.cast<float>());
-    CHECK_THROWS_AS(place_signature(runs, poses.topRows(2), axes), std::invalid_argument);
+    CHECK(placed.sample_positions == poses(std::vector<int>{0, 2}, Eigen::all));
+    CHECK_THROWS_AS(place_signature(runs, poses.topRows(2), axes, 2), std::invalid_argument);
+    CHECK_THROWS_AS(place_signature(runs, poses, axes, 0), std::invalid_argument);
+}
+
+TEST_CASE("a pose with a missing marker has no position, whether it is sampled or not") {
+    const Signature runs{{5, 0, 4}, {1, 4, 4}};
+    const MatrixF axes = MatrixF::Identity(9, 9);
+    for (const Eigen::Index missing : {4, 5}) {
+        MatrixF poses = MatrixF::Zero(8, 9);
+        poses.block(missing, 3, 1, 3).setConstant(std::numeric_limits<float>::quiet_NaN());
+        CHECK_THROWS_WITH(place_signature(runs, poses, axes, 4), Catch::Contains("frames 4:8"));
+    }
+}
+
+TEST_CASE("samples are every so many frames from the first, and the last") {
+    const auto frames_of = [](const FrameSamples& samples) {
+        std::vector<int64_t> frames;
+        for (int64_t i = 0; i < samples.count(); ++i) frames.push_back(samples.frame(i));
+        return frames;
+    };
+    CHECK(frames_of({17, 8}) == std::vector<int64_t>{0, 8, 16});
+    CHECK(frames_of({18, 8}) == std::vector<int64_t>{0, 8, 16, 17});
+    CHECK(frames_of({1, 8}) == std::vector<int64_t>{0});
+    CHECK(frames_of({0, 8}).empty());
+    CHECK(frames_of({3, 1}) == std::vector<int64_t>{0, 1, 2});
+}
+
+TEST_CASE("between samples positions follow the motion") {
+    const FrameSamples samples{62, 8};  // the last two are five frames apart
+    const auto motion = [](double frame, bool straight) {
+        MatrixF position(1, 2);
+        if (straight) {
+            position << float(3 * frame - 7), float(frame);
+        } else {
+            position << float(100 * std::sin(frame / 20)), float(100 * std::cos(frame / 20));
+        }
+        return position;
+    };
+    for (const bool straight : {true, false}) {
+        MatrixF positions(samples.count(), 2);
+        for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+            positions.row(i) = motion(double(samples.frame(i)), straight);
+        }
+        const MatrixF between = positions_between(positions, samples, 0.5, 0.25, 240);
+        for (Eigen::Index i = 0; i < between.rows(); ++i) {
+            const double frame = 0.5 + 0.25 * double(i);
+            const float off = (between.row(i) - motion(frame, straight)).norm();
+            // The tangents at either end are those of the line to the next sample.
+            const bool at_end = frame < 8 || frame > 56;
+            CHECK(off < (straight ? 1e-4F : at_end ? 4.F : 0.5F));
+        }
+        CHECK(positions_between(positions, samples, 0, 8, 8) == positions.topRows(8));
+        CHECK(positions_between(positions, samples, -9, 1, 1) == positions.row(0));
+        CHECK(positions_between(positions, samples, 99, 1, 1) == positions.row(8));
+    }
+    const MatrixF one = MatrixF::Constant(1, 2, 5);
+    CHECK(positions_between(one, {1, 8}, 0, 1, 3) == MatrixF::Constant(3, 2, 5));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "kinetome/base/random.h"
@@ -23,11 +24,14 @@ MatrixF random_positions() {
     return positions;
 }
 
-/// Runs that lie where their leaves do.
+/// Runs and all their frames, which lie where their leaves do.
 PlacedSignature at_leaves(const Signature& signature, const MatrixF& positions) {
-    std::vector<int32_t> leaves;
-    for (const SignatureRun& run : signature) leaves.push_back(run.leaf);
-    return {signature, positions(leaves, Eigen::all)};
+    std::vector<int32_t> leaves, frame_leaves;
+    for (const SignatureRun& run : signature) {
+        leaves.push_back(run.leaf);
+        frame_leaves.insert(frame_leaves.end(), static_cast<size_t>(run.frames), run.leaf);
+    }
+    return {signature, positions(leaves, Eigen::all), 1, positions(frame_leaves, Eigen::all)};
 }
 std::vector<PlacedSignature> at_leaves(const std::vector<Signature>& clips,
                                        const MatrixF& positions) {
@@ -78,23 +82,34 @@ Signature at_tempo(const Signature& clip, const RowRange& frames, double factor)
     return make_signature(leaves);
 }
 
-/// The nearest match anywhere, without an index.
+/// The nearest match anywhere, without an index, frame by frame.
 SignatureMatch nearest_by_scan(const Example& example, const Signature& query,
                                const SignatureMatchOptions& options) {
+    const MatrixF asked = at_leaves(query, example.positions).sample_positions;
     SignatureMatch nearest{{}, std::numeric_limits<double>::infinity()};
     for (const Signature& clip : example.clips) {
-        MatrixF distances(query.size(), clip.size());
-        for (size_t i = 0; i < query.size(); ++i) {
-            for (size_t j = 0; j < clip.size(); ++j) {
-                distances(Eigen::Index(i), Eigen::Index(j)) =
-                    (example.positions.row(query[i].leaf) - example.positions.row(clip[j].leaf))
-                        .norm();
-            }
+        const MatrixF text = at_leaves(clip, example.positions).sample_positions;
+        MatrixF distances(asked.rows(), text.rows());
+        for (Eigen::Index i = 0; i < asked.rows(); ++i) {
+            distances.row(i) = (text.rowwise() - asked.row(i)).rowwise().norm().transpose();
         }
-        const auto matches = match_signature(query, clip, distances, options);
+        const auto matches = match_paces(asked.rows(), distances, options);
         if (!matches.empty()) nearest = std::min(nearest, matches.front());
     }
     return nearest;
+}
+
+/// Poses (cm) that sway by some centimetres, never twice in the same way.
+MatrixF swaying_poses(uint64_t seed, int64_t frames, double speed) {
+    RandomStream random(seed, "sway");
+    MatrixF poses = MatrixF::Zero(frames, 9);
+    for (Eigen::Index j = 3; j < poses.cols(); ++j) {
+        const double pace = speed * (0.5 + random.uniform()), phase = 6 * random.uniform();
+        for (Eigen::Index i = 0; i < frames; ++i) {
+            poses(i, j) = float(4 * std::sin(pace * double(i) + phase));
+        }
+    }
+    return poses;
 }
 
 }  // namespace
@@ -103,10 +118,11 @@ TEST_CASE("a query is answered by what lies nearest to it, though in the same le
     const Signature runs{{0, 0, 40}};
     std::vector<PlacedSignature> clips;
     for (const float at : {0.0F, 10.0F, -10.0F}) {
-        clips.push_back({runs, MatrixF::Constant(1, 1, at)});
+        clips.push_back({runs, MatrixF::Constant(1, 1, at), 40, MatrixF::Constant(2, 1, at)});
     }
     const SignatureIndex index(clips, MatrixF::Zero(1, 1), {}, 1);
-    const auto found = index.search({runs, MatrixF::Constant(1, 1, -6)}, 3, {});
+    const auto found =
+        index.search({runs, MatrixF::Constant(1, 1, -6), 40, MatrixF::Constant(2, 1, -6)}, 3, {});
     REQUIRE(found.size() == 3);
     CHECK(found[0].clip == 2);
     CHECK(found[0].match.distance == Approx(4));
@@ -114,23 +130,79 @@ TEST_CASE("a query is answered by what lies nearest to it, though in the same le
     CHECK(found[2].match.distance == Approx(16));
 }
 
-TEST_CASE("positions that do not fit their runs are refused") {
+TEST_CASE("a part of a motion in one long run finds itself, to the frame") {
+    const MatrixF axes = MatrixF::Identity(9, 9), leaf = MatrixF::Zero(1, 9);
+    for (const double speed : {0.003, 0.05}) {  // standing, running
+        std::vector<PlacedSignature> clips;
+        std::vector<MatrixF> poses;
+        for (uint64_t seed = 0; seed < 4; ++seed) {
+            poses.push_back(swaying_poses(seed, 700, speed));
+            clips.push_back(place_signature({{0, 0, 700}}, poses.back(), axes, 8));
+        }
+        const SignatureIndex index(clips, leaf, {}, 1);
+        for (const RowRange frames : {RowRange{100, 340}, {103, 344}, {0, 61}, {459, 700}}) {
+            const PlacedSignature query =
+                place_signature({{0, 0, int32_t(frames.size())}},
+                                poses[2].middleRows(frames.first, frames.size()), axes, 1);
+            for (const int64_t k : {1, 10}) {
+                const auto found = index.search(query, k, {});
+                INFO("speed " << speed << ", frames " << frames.first << " to " << frames.end);
+                REQUIRE_FALSE(found.empty());
+                INFO("found " << found[0].match.frames.first << " to "
+                              << found[0].match.frames.end);
+                CHECK(found[0].clip == 2);
+                CHECK(found[0].match.frames == frames);
+                CHECK(found[0].match.distance < 0.5);
+            }
+        }
+    }
+}
+
+TEST_CASE("a tolerance holds of where an answer is moved to, not of the step it was found at") {
+    const MatrixF axes = MatrixF::Identity(9, 9);
+    const MatrixF poses = swaying_poses(3, 700, 0.05);
+    const SignatureIndex index({place_signature({{0, 0, 700}}, poses, axes, 8)},
+                               MatrixF::Zero(1, 9), {}, 1);
+    SignatureSearchOptions options;
+    options.match.tolerance = 0.5;
+    const auto found = index.search(
+        place_signature({{0, 0, 240}}, poses.middleRows(101, 240), axes, 1), 10, options);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].match.frames == RowRange{101, 341});
+}
+
+TEST_CASE("positions that do not fit their runs or samples are refused") {
     const Signature runs{{0, 0, 40}};
-    const MatrixF leaf = MatrixF::Zero(1, 3);
-    CHECK_THROWS_AS(SignatureIndex({{runs, MatrixF::Zero(2, 3)}}, leaf, {}, 1),
+    const MatrixF leaf = MatrixF::Zero(1, 3), ends = MatrixF::Zero(2, 3);
+    const auto index_of = [&](const std::vector<PlacedSignature>& clips) {
+        return SignatureIndex(clips, leaf, {}, 1);
+    };
+    const PlacedSignature right{runs, leaf, 40, ends};
+    CHECK_THROWS_AS(index_of({{runs, ends, 40, ends}}), std::invalid_argument);
+    CHECK_THROWS_AS(index_of({{runs, leaf, 40, leaf}}), std::invalid_argument);
+    CHECK_THROWS_AS(index_of({right, {runs, leaf, 39, ends}}), std::invalid_argument);
+    CHECK(index_of({{}, right, {}}).parts().stride == 40);  // clips without frames have none
+    const SignatureIndex index = index_of({right});
+    CHECK_THROWS_AS(index.search({runs, MatrixF::Zero(1, 2), 40, ends}, 1, {}),
                     std::invalid_argument);
-    const SignatureIndex index({{runs, leaf}}, leaf, {}, 1);
-    CHECK_THROWS_AS(index.search({runs, MatrixF::Zero(1, 2)}, 1, {}), std::invalid_argument);
-    CHECK_THROWS_AS(index.search({runs, MatrixF::Zero(2, 3)}, 1, {}), std::invalid_argument);
-    auto parts = index.parts();
-    parts.positions = MatrixF::Zero(2, 3);
-    CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+    CHECK_THROWS_AS(index.search({runs, ends, 40, ends}, 1, {}), std::invalid_argument);
+    CHECK_THROWS_AS(index.search({runs, leaf, 40, MatrixF::Zero(3, 3)}, 1, {}),
+                    std::invalid_argument);
+    for (MatrixF SignatureIndex::Parts::*positions :
+         {&SignatureIndex::Parts::positions, &SignatureIndex::Parts::sample_positions}) {
+        auto parts = index.parts();
+        parts.*positions = MatrixF::Zero(3, 3);
+        CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+        parts = index.parts();
+        (parts.*positions)(0, 1) = std::numeric_limits<float>::quiet_NaN();
+        CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
+    }
 }
 
 TEST_CASE("the index finds what a scan of all signatures finds nearest") {
     const Example example;
     SignatureSearchOptions options;
-    options.match.step = 4;
+    options.match.step = 1;
     for (int64_t clip = 0; clip < 40; clip += 3) {
         const Signature query = at_tempo(example.clips[size_t(clip)], {40, 280}, 1.2);
         const auto found = example.search(query, 5, options);
@@ -222,7 +294,8 @@ TEST_CASE("parts that do not fit make no index") {
     parts = example.index.parts();
     parts.near_leaves.first.pop_back();
     CHECK_THROWS_AS(SignatureIndex(parts), std::invalid_argument);
-    const PlacedSignature unknown{{{leaf_count, 0, 4}}, example.positions.topRows(1)};
+    const PlacedSignature unknown{
+        {{leaf_count, 0, 4}}, example.positions.topRows(1), 4, example.positions.topRows(2)};
     CHECK_THROWS_AS(SignatureIndex({unknown}, example.positions, {}, 1), std::invalid_argument);
 }
 

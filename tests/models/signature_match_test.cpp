@@ -27,9 +27,32 @@ MatrixF distances_between(const Signature& query, const Signature& text) {
     return distances;
 }
 
+MatrixD by_frame(const Signature& query, const Signature& text) {
+    const MatrixF runs = distances_between(query, text);
+    MatrixD distances(frame_count(query), frame_count(text));
+    for (Eigen::Index i = 0; i < distances.rows(); ++i) {
+        for (Eigen::Index j = 0; j < distances.cols(); ++j) {
+            distances(i, j) = double(runs(run_at(query, i), run_at(text, j)));
+        }
+    }
+    return distances;
+}
+
 std::vector<SignatureMatch> matches_of(const Signature& query, const Signature& text,
                                        const SignatureMatchOptions& options) {
-    return match_signature(query, text, distances_between(query, text), options);
+    if (options.rule != MatchRule::pace) {
+        return match_runs(query, text, distances_between(query, text), options);
+    }
+    const MatrixF frames = by_frame(query, text).cast<float>();
+    const int64_t rows = std::max<int64_t>(1, frames.rows() / options.step);
+    MatrixF moments(rows, frames.cols() / options.step);
+    for (Eigen::Index i = 0; i < moments.rows(); ++i) {
+        for (Eigen::Index j = 0; j < moments.cols(); ++j) {
+            moments(i, j) = frames((2 * i + 1) * frames.rows() / (2 * rows),
+                                   j * options.step + options.step / 2);
+        }
+    }
+    return match_paces(frame_count(query), moments, options);
 }
 
 /// Runs of 1 to `longest` frames.
@@ -86,17 +109,6 @@ std::map<int64_t, double> nearest_parts(const MatrixD& distances, const WarpOpti
         }
     }
     return nearest;
-}
-
-MatrixD by_frame(const Signature& query, const Signature& text) {
-    const MatrixF runs = distances_between(query, text);
-    MatrixD distances(frame_count(query), frame_count(text));
-    for (Eigen::Index i = 0; i < distances.rows(); ++i) {
-        for (Eigen::Index j = 0; j < distances.cols(); ++j) {
-            distances(i, j) = double(runs(run_at(query, i), run_at(text, j)));
-        }
-    }
-    return distances;
 }
 
 /// Least cost of editing runs [i, n) of the query into runs [j, end) of the text, by trying all.
@@ -258,10 +270,16 @@ TEST_CASE("exact matches have the query's leaves, however long the runs are") {
 
 TEST_CASE("nothing matches nothing, and distances must fit") {
     const Signature query = random_signature(1, 3, 4), text = random_signature(2, 5, 4);
-    CHECK(match_signature({}, text, MatrixF(0, text.size()), {}).empty());
-    CHECK(match_signature(query, {}, MatrixF(query.size(), 0), {}).empty());
-    CHECK_THROWS_AS(match_signature(query, text, MatrixF(1, 1), {}), std::invalid_argument);
+    SignatureMatchOptions by_runs;
+    by_runs.rule = MatchRule::edit;
+    CHECK(match_runs({}, text, MatrixF(0, text.size()), by_runs).empty());
+    CHECK(match_runs(query, {}, MatrixF(query.size(), 0), by_runs).empty());
+    CHECK_THROWS_AS(match_runs(query, text, MatrixF(1, 1), by_runs), std::invalid_argument);
+    CHECK_THROWS_AS(match_runs(query, text, distances_between(query, text), {}),
+                    std::invalid_argument);
+    CHECK(match_paces(0, MatrixF(0, 4), {}).empty());
+    CHECK(match_paces(40, MatrixF(4, 0), {}).empty());
     SignatureMatchOptions options;
     options.step = 0;
-    CHECK_THROWS_AS(matches_of(query, text, options), std::invalid_argument);
+    CHECK_THROWS_AS(match_paces(40, MatrixF::Zero(4, 4), options), std::invalid_argument);
 }

@@ -23,8 +23,8 @@ std::vector<HeldOut> parse_held_out(const std::string& word);
 /// Of fewer than 14 takes the last is held out. A line a class, way of holding out and method:
 /// class,held_out,principal,leaves,trained,tested,
 /// method,rms_mm,p95_mm,max_mm,to_linear,to_nearest; errors over estimated markers, the last two as
-/// multiples of the RMS of the linear map and of the nearest pose. Throws UsageError when there are
-/// too few takes to hold one out.
+/// multiples of the RMS of the linear map and of the nearest pose, empty where these are 0. Throws
+/// UsageError when there are too few takes to hold one out.
 Table estimation_table(const std::vector<MarkerTakes>& classes, const std::vector<HeldOut>& ways,
                        const HierarchyEvaluationOptions& options, const Workers& workers);
 

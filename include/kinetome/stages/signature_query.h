@@ -23,11 +23,10 @@ struct SignatureQuery {
 };
 
 /// rank,clip,first,end,distance: nearest first; frames at the source's rate, from 0, end exclusive;
-/// distance in mm per marker, the mean along the alignment: between leaves, or with rerank between
-/// markers. Runs of leaves are compared by their mean poses: a part of a clip of the store finds
-/// itself, but where it lies in one long run only about in its place. Throws UsageError for a clip
-/// that is not indexed, for frames outside it and for a take of a class that the store has none of,
-/// InputError.
+/// distance in mm per marker, the mean along the alignment: between what the index keeps of poses
+/// or runs (MatchRule), or with rerank between markers. A part of a clip of the store finds itself,
+/// by MatchRule::pace to the frame. Throws UsageError for a clip that is not indexed, for frames
+/// outside it and for a take of a class that the store has none of, InputError.
 Table query_table(const Generation& generation, const SignatureQuery& query, int threads);
 
 /// clip,first,end,leaf: runs of every signature, clips in name order; frames likewise.
