@@ -46,9 +46,9 @@ ExitCode answer(const QueryFlags& flags, const Invocation& invocation) {
     const TableFormat format = parse_table_format(flags.format);
     const OpenStore open(flags.store, flags.generation);
     const int threads = invocation.resources().threads;
-    const Table table =
-        flags.bundle.empty() ? query_table(open.generation, query, threads)
-                             : bundle_query_table(open, flags.bundle, flags.labels, query, threads);
+    const Table table = flags.bundle.empty()
+                            ? query_table(open.generation, query, threads)
+                            : bundle_query_table(open, flags.bundle, flags.labels, query, threads);
     write_text(flags.output, write_table(table, format));
     return ExitCode::success;
 }

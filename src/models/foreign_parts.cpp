@@ -72,7 +72,7 @@ std::optional<Parting> least_met(const RowRange& segment, const Recurrence& recu
 std::vector<ScoredSegment> without_foreign_parts(const std::vector<ScoredSegment>& segments,
                                                  const Recurrence& recurrence,
                                                  const RepetitionOptions& options, double rate) {
-    const int64_t shortest = frame_count(options.least_part, rate);
+    const int64_t shortest = std::max<int64_t>(frame_count(options.least_part, rate), 1);
     std::vector<ScoredSegment> result;
     std::vector<ScoredSegment> left(segments.rbegin(), segments.rend());
     while (!left.empty()) {

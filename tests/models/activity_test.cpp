@@ -234,6 +234,9 @@ TEST_CASE("neither what comes back nor what never repeats is cut for being forei
     CHECK(parts_of(toy::Motion().raise(3, 60, 0).rows()) == 1);
     CHECK(parts_of(toy::Motion().circle(1, 60, 0).circle(1, 60, 4, 200).rows()) == 1);
     CHECK(parts_of(toy::Motion().circle(1, 59, 0).rows()) == 1);
+    // Parts that ought to last less than a frame have one all the same.
+    const Recurrence pair{{0, 1, 2}, {1, 0}, {1, 1}, {1, 1}};
+    CHECK(without_foreign_parts({{{0, 2}, 1}}, pair, {}, 0.1).size() == 1);
 }
 
 TEST_CASE("a boundary is moved to where the frames are likest their own activities") {
