@@ -160,11 +160,12 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
 
 ReindexOptions paper_options() {
     ReindexOptions options;
-    options.partition.rule = PartitionRule::none;    // S1 clusters each database as a whole
-    options.motion_strings.tau_quantile = 0.5;       // S1 §3.6
-    options.bundles.step_quantile = 1;               // S1 Eq. 2
-    options.bundles.spread = BundleSpread::closure;  // S1 Eq. 5
-    options.pose_hierarchy.overlap = 0.1;            // S2 §4, fuzzy partition
+    options.partition.rule = PartitionRule::none;          // S1 clusters each database as a whole
+    options.motion_strings.tau_quantile = 0.5;             // S1 §3.6
+    options.bundles.step_quantile = 1;                     // S1 Eq. 2
+    options.bundles.spread = BundleSpread::closure;        // S1 Eq. 5
+    options.pose_hierarchy.leaf_rule = LeafRule::maximum;  // S2 §6, of any pose
+    options.pose_hierarchy.overlap = 0.1;                  // S2 §4, fuzzy partition
     options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1
     options.neighbors.knn.radius = 64;                                // S3 §5
     options.activities.method = ActivityMethod::region_growing;       // S3 §3.1

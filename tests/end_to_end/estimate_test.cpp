@@ -63,3 +63,37 @@ TEST_CASE("a pose hierarchy is exported and evaluated", "[estimate]") {
     require_program({"evaluate", store.path, "--what", "estimation", "--leaf-tolerance", "0"},
                     usage);
 }
+
+TEST_CASE("the paper's preset makes the paper's hierarchy", "[estimate]") {
+    const ModelledStore store;
+    const std::string path = store.output("paper");
+    require_program(reindex(store.folder / "takes", path,
+                            {"--only", "frames,features,pose_hierarchy", "--preset", "paper"}));
+    const auto cells = [&](std::vector<std::string> command) {
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& record : kinetome::parse_csv(require_program(command).output, "table")) {
+            rows.push_back(record.fields);
+        }
+        return rows;
+    };
+    // Poses near planes help to make both children.
+    int64_t copied = 0;
+    const auto nodes = cells({"export", path, "hierarchy"});
+    for (size_t i = 1; i < nodes.size(); ++i) {
+        if (nodes[i].at(5) != "-1") copied += std::stoll(nodes[i].at(6));
+    }
+    CHECK(copied > 6000);
+    // No pose is beyond the tolerance.
+    const auto compression =
+        cells({"evaluate", path, "--what", "compression", "--preset", "paper", "--format", "csv"});
+    REQUIRE(compression.size() == 2);
+    CHECK(std::stod(compression[1].at(8)) <= 20);
+    // Maps follow the poses they were made of as nearly as linear maps can.
+    const auto estimated = [&](const std::string& from) {
+        const std::string take = (store.folder / "takes" / "01" / "01_01.amc").string();
+        const auto lines = lines_of(
+            require_program({"estimate", from, "--file", take, "--blend-band", "0"}).output);
+        return std::stod(lines.back().substr(std::string("rms_mm ").size()));
+    };
+    CHECK(estimated(path) < estimated(store.path) / 2);
+}
