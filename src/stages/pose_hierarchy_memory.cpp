@@ -17,11 +17,13 @@ constexpr uint64_t place_bytes = 8;
 
 int64_t expected_leaves(const HierarchySize& size, const PoseHierarchyOptions& options) {
     // Seconds a leaf of many subjects' varied motion at 20 mm and four dimensions, and how they
-    // grow with both. Frames between those that are there already make no more leaves.
+    // grow with both; half as many where every pose is to be within the tolerance. Frames between
+    // those that are there already make no more leaves.
     constexpr double seconds_per_leaf = 0.6;
     const double seconds = seconds_per_leaf * std::pow(options.leaf_tolerance / 20, 1.75) *
                            std::pow(options.dimension / 4.0, 1.7);
-    const double leaves = size.seconds / std::max(seconds, 0.01);
+    const double parts = options.leaf_rule == LeafRule::maximum ? 2 : 1;
+    const double leaves = parts * size.seconds / std::max(seconds, 0.01);
     return std::clamp<int64_t>(std::llround(leaves), 1, std::max<int64_t>(size.rows, 1));
 }
 
