@@ -39,7 +39,7 @@ struct RepetitionOptions {
     double least_return = 2.0 / 3;  ///< frames nearer in time do not count for that
     double longest_side = 1;        ///< of a transition, before its boundary and after
     double least_transition = 0.2;  ///< shorter ones are left to their activities
-    double boundary_reach = 1.0 / 3;  ///< that a boundary without transition is moved at most
+    double boundary_reach = 1.0 / 3;  ///< that a boundary or a transition's end is moved at most
     double path_side = 8.0 / 30;      ///< of the warping paths by which frames are compared for it
 };
 
