@@ -39,7 +39,8 @@ void check(const MatrixFView& rows, std::span<const RowRange> clips,
             throw std::invalid_argument("a member is empty or reaches beyond its clip");
     }
     if (options.surroundings < 1 || options.slip < 0 || options.members < 1 ||
-        !(options.unlike > 0) || !(options.reach > 0) || !(options.own_reach > 0))
+        options.candidates < 1 || !(options.unlike > 0) || !(options.reach > 0) ||
+        !(options.own_reach > 0))
         throw std::invalid_argument("options of bundle links must be positive");
 }
 
@@ -116,6 +117,13 @@ class Linking {
         double cost = infinite;
     };
 
+    struct Candidate {
+        int32_t subject = 0;
+        double glance = 0;
+        int32_t bundle = 0;
+        auto operator<=>(const Candidate&) const = default;
+    };
+
     int64_t count() const { return static_cast<int64_t>(speakers_.bundles.size()); }
     int32_t subject(int32_t bundle) const {
         return speakers_.subject_of[static_cast<size_t>(bundle)];
@@ -150,33 +158,22 @@ class Linking {
         usual_unlikeness_ = median(std::move(unlikeness));
     }
 
-    template <class Bound>
-    double least(int32_t from, int32_t to, const Bound& bound) const {
+    /// How far the middle of a member of the one is from the nearest of the other.
+    double glances(int32_t from, int32_t to) const {
         double least = infinite;
-        for (const size_t a : members(from)) {
-            for (const size_t b : members(to)) least = std::min(least, bound(a, b));
+        for (const size_t i : members(from)) {
+            for (const size_t j : members(to)) least = std::min(least, members_.glance(i, j));
         }
         return least;
     }
 
-    /// No cost of the two is less; infinite as soon as that is above `at_most`.
-    double bound(int32_t a, int32_t b, double at_most) const {
-        const auto rough = [&](size_t i, size_t j) { return members_.rough_bound(i, j); };
-        const auto tight = [&](size_t i, size_t j) { return members_.bound(i, j); };
-        if (least(a, b, rough) > at_most || least(b, a, rough) > at_most) return infinite;
-        const double there = least(a, b, tight);
-        if (there > at_most) return infinite;
-        const double cost = std::max(there, least(b, a, tight));
-        return cost > at_most ? infinite : cost;
-    }
-
     /// The cheapest path from a member of the one to a member of the other.
-    double way(int32_t from, int32_t to, double at_most) const {
+    double way(int32_t from, int32_t to, double reach, double at_most) const {
         double best = at_most;
         bool found = false;
         for (const size_t a : members(from)) {
             for (const size_t b : members(to)) {
-                if (members_.bound(a, b) > best) continue;
+                if (members_.glance(a, b) > reach || members_.bound(a, b, best) > best) continue;
                 const double cost = members_.find(a, b, best, usual_unlikeness_).cost;
                 if (cost > best) continue;
                 best = cost;
@@ -187,21 +184,40 @@ class Linking {
     }
 
     /// How far apart two bundles are that agree; infinite when they do not, or not within at_most.
-    double distance(int32_t a, int32_t b, double at_most) const {
-        const double there = way(a, b, at_most);
-        return there == infinite ? infinite : std::max(there, way(b, a, at_most));
+    double distance(int32_t a, int32_t b, double reach, double at_most) const {
+        const double there = way(a, b, reach, at_most);
+        return there == infinite ? infinite : std::max(there, way(b, a, reach, at_most));
+    }
+
+    /// Of each subject the bundles that look nearest, within reach, by subject and nearness.
+    template <class Wanted>
+    std::vector<Candidate> candidates(int32_t a, double reach, const Wanted& wanted) const {
+        std::vector<Candidate> all;
+        for (int32_t b = 0; b < count(); ++b) {
+            if (b == a || !wanted(subject(b))) continue;
+            const double there = glances(a, b);
+            if (there > reach) continue;
+            const double glance = std::max(there, glances(b, a));
+            if (glance <= reach) all.push_back({subject(b), glance, b});
+        }
+        std::ranges::sort(all);
+        std::vector<Candidate> nearest;
+        int64_t of_subject = 0;
+        for (const Candidate& one : all) {
+            if (nearest.empty() || nearest.back().subject != one.subject) of_subject = 0;
+            if (of_subject++ < options_.candidates) nearest.push_back(one);
+        }
+        return nearest;
     }
 
     void unite_kinds() {
-        const double at_most = options_.own_reach * usual_cost_;
-        std::map<int32_t, std::vector<int32_t>> of_subjects;
-        for (int32_t b = 0; b < count(); ++b) of_subjects[subject(b)].push_back(b);
+        const double reach = options_.own_reach * usual_cost_;
         parallel_for(threads_, count(), [&](int64_t i) {
             const auto a = static_cast<int32_t>(i);
-            for (const int32_t b : of_subjects.at(subject(a))) {
-                if (b <= a || kinds_.together(a, b)) continue;
-                if (bound(a, b, at_most) <= at_most && distance(a, b, at_most) <= at_most)
-                    kinds_.unite(a, b);
+            const auto own = [&](int32_t other) { return other == subject(a); };
+            for (const Candidate& one : candidates(a, reach, own)) {
+                if (kinds_.together(a, one.bundle)) continue;
+                if (distance(a, one.bundle, reach, reach) <= reach) kinds_.unite(a, one.bundle);
             }
         });
     }
@@ -218,28 +234,15 @@ class Linking {
 
     /// The nearest bundle of each other body that agrees with one, by subject.
     std::vector<Near> nearest(int32_t a) const {
-        const double at_most = options_.reach * usual_cost_;
-        struct Candidate {
-            int32_t subject, bundle;
-            double bound;
-        };
-        std::vector<Candidate> candidates;
-        for (int32_t b = 0; b < count(); ++b) {
-            if (subject(b) == subject(a)) continue;
-            const double least = bound(a, b, at_most);
-            if (least <= at_most) candidates.push_back({subject(b), b, least});
-        }
-        std::ranges::sort(candidates, {}, [](const Candidate& one) {
-            return std::tuple(one.subject, one.bound, one.bundle);
-        });
+        const double reach = options_.reach * usual_cost_;
+        const auto others = [&](int32_t other) { return other != subject(a); };
         std::vector<Near> near;
-        for (const Candidate& one : candidates) {
+        // What looks nearest comes first, so that the others can be given up soon.
+        for (const Candidate& one : candidates(a, reach, others)) {
             if (near.empty() || near.back().subject != one.subject)
                 near.push_back({.subject = one.subject});
             Near& best = near.back();
-            const double allowed = std::min(at_most, best.cost);
-            if (one.bound > allowed) continue;
-            const double cost = distance(a, one.bundle, allowed);
+            const double cost = distance(a, one.bundle, reach, std::min(reach, best.cost));
             if (std::pair(cost, one.bundle) < std::pair(best.cost, best.bundle))
                 best = {one.subject, one.bundle, cost};
         }
@@ -257,7 +260,9 @@ class Linking {
             for (const Near& other : near[static_cast<size_t>(a)]) {
                 const auto& back = near[static_cast<size_t>(other.bundle)];
                 const auto own = std::ranges::lower_bound(back, subject(a), {}, &Near::subject);
-                if (kinds_.together(own->bundle, a))
+                // Nothing that is nearer where others look nearer than this one.
+                const bool none = own == back.end() || own->subject != subject(a);
+                if (none || own->cost >= other.cost || kinds_.together(own->bundle, a))
                     linked[std::minmax(a, other.bundle)] = other.cost;
             }
         }

@@ -67,19 +67,7 @@ MemberAgreement::MemberAgreement(const MatrixFView& rows, std::vector<Occurrence
     : rows_(along_main_axes(rows, occurrences)),
       occurrences_(std::move(occurrences)),
       options_(options) {
-    const auto count = static_cast<Eigen::Index>(occurrences_.size());
-    for (MatrixD* corners : {&query_low_, &query_high_, &low_, &high_})
-        corners->resize(count, rows_.cols());
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const Occurrence& one = occurrences_[static_cast<size_t>(i)];
-        const auto query = rows_.middleRows(one.query.first, one.query.size()).cast<double>();
-        const auto sequence =
-            rows_.middleRows(one.sequence.first, one.sequence.size()).cast<double>();
-        query_low_.row(i) = query.colwise().minCoeff();
-        query_high_.row(i) = query.colwise().maxCoeff();
-        low_.row(i) = sequence.colwise().minCoeff();
-        high_.row(i) = sequence.colwise().maxCoeff();
-    }
+    columns_ = rows_.transpose();
 }
 
 bool MemberAgreement::share_surroundings(size_t a, size_t b) const {
@@ -87,29 +75,50 @@ bool MemberAgreement::share_surroundings(size_t a, size_t b) const {
     return one.first < other.end && other.first < one.end;
 }
 
-double MemberAgreement::rough_bound(size_t from, size_t to) const {
-    const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
-    return (low_.row(j) - query_high_.row(i))
-        .cwiseMax(query_low_.row(i) - high_.row(j))
-        .cwiseMax(0)
-        .norm();
+double MemberAgreement::glance(size_t from, size_t to) const {
+    const RowRange &member = occurrences_[from].member, &other = occurrences_[to].member;
+    const RowRange& within = occurrences_[to].sequence;
+    const auto middle = rows_.row((member.first + member.end) / 2);
+    const int64_t first = std::max(within.first, other.first - options_.slip);
+    const int64_t end = std::min(within.end, other.end + options_.slip);
+    float least = std::numeric_limits<float>::infinity();
+    for (int64_t row = first; row < end; ++row)
+        least = std::min(least, (rows_.row(row) - middle).squaredNorm());
+    return std::sqrt(static_cast<double>(least));
 }
 
-double MemberAgreement::bound(size_t from, size_t to) const {
-    const RowRange& query = occurrences_[from].query;
-    const auto j = static_cast<Eigen::Index>(to);
-    // The least total of slope_limited_steps, were each row's distance that to the box.
-    double before = infinite, total = infinite;
+double MemberAgreement::bound(size_t from, size_t to, double at_most) const {
+    const RowRange &query = occurrences_[from].query, &sequence = occurrences_[to].sequence;
+    const Eigen::Index count = sequence.size();
+    constexpr Eigen::Index longest_step = 2;
+    constexpr double rounding = 1e-5;  // relative, of sums of floats
+    const double hopeless = at_most * static_cast<double>(query.size()) * (1 + rounding);
+    // Totals of the row before the last, of the last and of this one, by where paths end.
+    Eigen::ArrayXf before =
+        Eigen::ArrayXf::Constant(count + longest_step, std::numeric_limits<float>::infinity());
+    Eigen::ArrayXf last = before, here = before, distance(count);
     for (int64_t row = query.first; row < query.end; ++row) {
-        const auto x = rows_.row(row).cast<double>();
-        const double distance = (low_.row(j) - x).cwiseMax(x - high_.row(j)).cwiseMax(0).norm();
-        const double here =
-            row == query.first ? distance : std::min(total + distance, before + 2 * distance);
-        before = total;
-        total = here;
+        distance.setZero();
+        for (Eigen::Index axis = 0; axis < columns_.rows(); ++axis) {
+            const auto y = columns_.row(axis).segment(sequence.first, count).transpose().array();
+            distance += (y - rows_(row, axis)).square();
+        }
+        distance = distance.sqrt();
+        if (row == query.first) {
+            here.tail(count) = distance;
+        } else {
+            here.tail(count) = (last.segment(1, count).min(last.head(count)) + distance)
+                                   .min(before.segment(1, count) + 2 * distance);
+        }
+        // A path comes through this row or the one before.
+        const float least = std::min(here.minCoeff(), last.minCoeff());
+        if (static_cast<double>(least) > hopeless) return infinite;
+        std::swap(before, last);
+        std::swap(last, here);
     }
-    constexpr double rounding = 1e-12;  // sums are added in another order than a path's
-    return total / static_cast<double>(query.size()) * (1 - rounding);
+    const auto total = static_cast<double>(last.minCoeff());
+    const double mean = total / static_cast<double>(query.size()) * (1 - rounding);
+    return mean > at_most ? infinite : mean;
 }
 
 /// Whether the middle of what answers the one member lies in the other, or that one's middle in

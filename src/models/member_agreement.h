@@ -32,10 +32,11 @@ class MemberAgreement {
     MemberAgreement(const MatrixFView& rows, std::vector<Occurrence> occurrences,
                     const BundleLinkOptions& options);
 
-    /// No path from the one in the surroundings of the other costs less. Two bounds, the second of
-    /// which is tighter and takes longer: how far what both pass through lies apart.
-    double rough_bound(size_t from, size_t to) const;
-    double bound(size_t from, size_t to) const;
+    /// How far the middle row of the one member is from the nearest of the other's, but for a slip.
+    double glance(size_t from, size_t to) const;
+    /// No path from the one in the surroundings of the other costs less; infinite as soon as that
+    /// is above `at_most`.
+    double bound(size_t from, size_t to, double at_most) const;
 
     /// The cheapest path of at most `at_most` on which both move alike: what remains of their
     /// movements is at most `unlikeness`, or the options' share of what they move. An infinite cost
@@ -47,10 +48,10 @@ class MemberAgreement {
   private:
     bool answers(const WarpPath& path, const Occurrence& from, const Occurrence& to) const;
 
-    MatrixF rows_;  ///< along main axes
+    MatrixF rows_;     ///< along main axes
+    MatrixF columns_;  ///< the same, an axis after the other
     std::vector<Occurrence> occurrences_;
     BundleLinkOptions options_;
-    MatrixD query_low_, query_high_, low_, high_;  ///< occurrences × axes: boxes about their rows
 };
 
 }  // namespace kinetome

@@ -30,11 +30,14 @@ TEST_CASE("bounds on how members agree are never above what they cost") {
     for (size_t a = 0; a < walks; ++a) {
         for (size_t b = 0; b < walks; ++b) {
             const double cost = members.find(a, b, any, any).cost;
-            CHECK(members.rough_bound(a, b) <= cost);
-            CHECK(members.bound(a, b) <= cost);
+            const double bound = members.bound(a, b, any);
+            CHECK(bound <= cost);
+            CHECK(bound >= 0.999 * cost);
+            CHECK(members.bound(a, b, bound) == bound);
+            if (bound > 0) CHECK(members.bound(a, b, 0.99 * bound) == any);
             CHECK(members.find(a, b, cost, any).cost == cost);
             CHECK((a != b || cost == 0));
-            bounded += members.bound(a, b) > 0;
+            bounded += bound > 0;
         }
     }
     CHECK(bounded > walks);

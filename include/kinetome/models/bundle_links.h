@@ -21,6 +21,8 @@ struct BundleLinkOptions {
     double own_reach = 2;       ///< the same between bundles of one body
     double unlike = 0.15;       ///< share of what both move that they may move differently
     int64_t members = 2;        ///< of each bundle, evenly spaced, that speak for it
+    int64_t candidates = 8;     ///< of each body with which a bundle is compared: those whose
+                                ///< middles are nearest
 };
 
 /// Two bundles of different subjects.
@@ -44,18 +46,20 @@ struct BundleLinks {
 ///
 /// Rows are compared along their 16 main axes. A member with its surroundings is looked for in the
 /// surroundings of another by subsequence time warping (slope_limited_steps). They hold the same
-/// motion when what answers the one member overlaps the other, but for `slip`, when the path costs
-/// at most `reach` usual costs, and when what remains of their movement about the mean of each
+/// motion when the middle of what answers the one lies in the other or the reverse, but for `slip`,
+/// when the path costs at most `reach` usual costs and the middle of the one is no farther from the
+/// nearest row of the other, and when what remains of their movement about the mean of each
 /// (Σ|x - y|²) is usual, or at most `unlike` of what they move (Σ|x|² + Σ|y|²): a left and a right
 /// punch are close, but share no movement. Bundles agree when a member of each is so found from a
 /// member of the other; they are as far apart as the dearer of the two cheapest paths.
 ///
-/// Bundles of one body that agree within `own_reach` usual costs, and those that agree with these,
-/// are one kind of motion. A bundle is linked with the nearest of each other body that agrees with
-/// it (ties: the lower one), unless that one is nearest to another kind of motion of the first's
-/// body: what that body does otherwise tells apart better than any distance between two bodies. The
-/// same for any number of threads. Throws std::invalid_argument when the lists disagree and for
-/// options that are not positive.
+/// A bundle is compared with `candidates` of each body, those which look nearest by middles of
+/// members. Bundles of one body that agree within `own_reach` usual costs, and those that agree
+/// with these, are one kind of motion. A bundle is linked with the nearest of each other body that
+/// agrees with it (ties: the lower one), unless that one is nearest to another kind of motion of
+/// the first's body: what that body does otherwise tells apart better than any distance between two
+/// bodies. The same for any number of threads. Throws std::invalid_argument when the lists disagree
+/// and for options that are not positive.
 BundleLinks link_bundles(const MatrixFView& rows, std::span<const RowRange> clips,
                          std::span<const BundleMember> members, std::span<const int32_t> subject_of,
                          const BundleLinkOptions& options, int threads);
