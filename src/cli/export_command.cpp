@@ -43,10 +43,11 @@ std::string exported(const ExportFlags& flags) {
         const GraphFormat format = parse_graph_format(format_of(flags, "csv"));
         const OpenStore open(flags.store, flags.generation);
         const WalkOptions options = options_of_bundle_walk({});
-        return write_graph(
+        StoredGraph graph =
             stored_graph(stored_bundle_members(open, flags.labels), clip_source(open.generation),
-                         options.longest_gap, options.style),
-            format);
+                         options.longest_gap, options.style);
+        link_clusters(graph, stored_bundle_links(open.generation));
+        return write_graph(graph, format);
     }
     const TableFormat format = parse_table_format(format_of(flags, "csv"));
     const OpenStore open(flags.store, flags.generation);

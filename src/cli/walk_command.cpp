@@ -157,7 +157,9 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
         print_blend(made);
         return ExitCode::success;
     }
-    const PrimitiveWalk made = walk_primitives(pieces, source, options);
+    const PrimitiveWalk made = walk_primitives(
+        pieces, source, options,
+        bundles ? stored_bundle_links(open.generation) : std::vector<ClusterLink>{});
     write_motion(made.motion, format, flags.output);
     print_walk(made);
     warn_of_early_end(made, flags.walk, invocation.log);

@@ -37,10 +37,10 @@ class Guide {
   public:
     Guide(const MotionGraph& graph, const WalkRequest& request) : graph_(graph) {
         const auto anywhere = all_nodes(graph);
-        const auto& goals = request.to.empty() ? anywhere : request.to;
+        goals_ = request.to.empty() ? anywhere : graph.with_linked(request.to);
         const auto& sources = request.from.empty() ? anywhere : request.from;
-        allowed_ = nodes_that_reach(graph, goals);
-        to_goal_ = frames_to(goals);
+        allowed_ = nodes_that_reach(graph, goals_);
+        to_goal_ = frames_to(goals_);
 
         std::vector<int32_t> starts;
         for (const int32_t node : sources) {
@@ -57,13 +57,15 @@ class Guide {
     }
 
     const std::vector<int32_t>& starts() const { return starts_; }
+    /// Whether a walk may end in a node: linked ones are as good as those that are wanted.
+    bool is_goal(int32_t node) const { return std::ranges::binary_search(goals_, node); }
     /// Frames from entering a node to the end of the nearest goal, by the mean length of pieces.
     double frames_to_goal(int32_t node) const { return to_goal_[static_cast<size_t>(node)]; }
 
     /// Successions to nodes from which the walk can go on: for ever, if there are such.
     std::vector<Succession> ways_on(int32_t node) const {
         std::vector<Succession> open, for_ever;
-        for (const Succession& way : graph_.successions(node)) {
+        for (const Succession& way : graph_.ways_on(node)) {
             const int32_t target = graph_.node_of(way.next);
             if (allowed(target)) open.push_back(way);
             if (allowed(target) && lasting(target)) for_ever.push_back(way);
@@ -75,7 +77,7 @@ class Guide {
     std::vector<Succession> ways_to_goal(int32_t node) const {
         std::vector<Succession> ways;
         double least = unreachable;
-        for (const Succession& way : graph_.successions(node)) {
+        for (const Succession& way : graph_.ways_on(node)) {
             const double left = frames_to_goal(graph_.node_of(way.next));
             if (left < least) ways.clear();
             least = std::min(least, left);
@@ -118,7 +120,7 @@ class Guide {
     std::vector<double> frames_to(const std::vector<int32_t>& goals) const {
         std::vector<std::vector<int32_t>> sources(static_cast<size_t>(graph_.nodes()));
         for (int32_t node = 0; node < graph_.nodes(); ++node) {
-            for (const int32_t target : graph_.targets(node)) {
+            for (const int32_t target : graph_.next_nodes(node)) {
                 sources[static_cast<size_t>(target)].push_back(node);
             }
         }
@@ -142,6 +144,7 @@ class Guide {
     }
 
     const MotionGraph& graph_;
+    std::vector<int32_t> goals_;  ///< ascending
     std::vector<bool> allowed_, lasting_;
     std::vector<double> to_goal_;
     std::vector<int32_t> starts_;
@@ -201,7 +204,7 @@ class Walker {
     }
     std::vector<Succession> ways_on(bool fills) const {
         if (!fills) return guide_.ways_on(node());
-        if (!has_goal() || std::ranges::count(request_.to, node()) > 0) return {};
+        if (!has_goal() || guide_.is_goal(node())) return {};
         return guide_.ways_to_goal(node());
     }
 
@@ -249,8 +252,22 @@ class Walker {
         return true;
     }
 
+    /// The last node is left by none: in one that is only linked with what is wanted, the walk goes
+    /// over into that.
+    int32_t last_exit() const {
+        const auto wanted = [&](int32_t node) { return std::ranges::count(request_.to, node) > 0; };
+        if (!has_goal() || !guide_.is_goal(node()) || wanted(node())) return entry_;
+        std::vector<int32_t> exits;
+        for (const int32_t other : graph_.linked(node())) {
+            if (!wanted(other)) continue;
+            const auto members = graph_.members(other);
+            exits.insert(exits.end(), members.begin(), members.end());
+        }
+        return *std::ranges::min_element(exits, {}, [&](int32_t exit) { return excess(exit); });
+    }
+
     GraphWalk ended() {
-        walk_.steps.push_back({node(), entry_, entry_});
+        walk_.steps.push_back({node(), entry_, last_exit()});
         walk_.frames += frames(graph_, entry_);
         walk_.ended_early = walk_.frames < request_.frames;
         return std::move(walk_);

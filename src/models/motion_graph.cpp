@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 
@@ -83,6 +84,7 @@ MotionGraph::MotionGraph(std::vector<MotionPiece> pieces, std::vector<int32_t> n
         }
         edges_of_.push_back(edges());
     }
+    link({});
 }
 
 std::span<const int32_t> MotionGraph::members(int32_t node) const {
@@ -110,6 +112,60 @@ std::span<const Succession> MotionGraph::successions(int32_t node) const {
     return std::span(successions_)
         .subspan(static_cast<size_t>(successions_of_edge_[first]),
                  static_cast<size_t>(successions_of_edge_[end] - successions_of_edge_[first]));
+}
+
+void MotionGraph::link(std::span<const NodeLink> links) {
+    std::vector<std::set<int32_t>> linked(static_cast<size_t>(nodes()));
+    for (const auto& [first, second] : links) {
+        if (std::min(first, second) < 0 || std::max(first, second) >= nodes() || first == second) {
+            throw std::invalid_argument(
+                "a link joins a node that is not there, or one with itself");
+        }
+        linked[static_cast<size_t>(first)].insert(second);
+        linked[static_cast<size_t>(second)].insert(first);
+    }
+    linked_.clear();
+    links_of_ = {0};
+    for (const auto& of_node : linked) {
+        linked_.insert(linked_.end(), of_node.begin(), of_node.end());
+        links_of_.push_back(static_cast<int64_t>(linked_.size()));
+    }
+}
+
+std::vector<NodeLink> MotionGraph::links() const {
+    std::vector<NodeLink> links;
+    for (int32_t node = 0; node < nodes(); ++node) {
+        for (const int32_t other : linked(node)) {
+            if (node < other) links.push_back({node, other});
+        }
+    }
+    return links;
+}
+
+std::span<const int32_t> MotionGraph::linked(int32_t node) const {
+    return part(linked_, links_of_, static_cast<size_t>(node));
+}
+
+std::vector<int32_t> MotionGraph::with_linked(std::span<const int32_t> nodes) const {
+    std::set<int32_t> all(nodes.begin(), nodes.end());
+    for (const int32_t node : nodes) all.insert(linked(node).begin(), linked(node).end());
+    return {all.begin(), all.end()};
+}
+
+std::vector<Succession> MotionGraph::ways_on(int32_t node) const {
+    const auto own = successions(node);
+    std::vector<Succession> ways(own.begin(), own.end());
+    for (const int32_t other : linked(node)) {
+        ways.insert(ways.end(), successions(other).begin(), successions(other).end());
+    }
+    return ways;
+}
+
+std::vector<int32_t> MotionGraph::next_nodes(int32_t node) const {
+    std::set<int32_t> next(targets(node).begin(), targets(node).end());
+    for (const int32_t other : linked(node))
+        next.insert(targets(other).begin(), targets(other).end());
+    return {next.begin(), next.end()};
 }
 
 int64_t MotionGraph::gap(const Succession& succession) const {

@@ -11,17 +11,15 @@ using Edges = std::vector<std::vector<int32_t>>;
 
 Edges forward_edges(const MotionGraph& graph) {
     Edges edges(static_cast<size_t>(graph.nodes()));
-    for (int32_t node = 0; node < graph.nodes(); ++node) {
-        const auto targets = graph.targets(node);
-        edges[static_cast<size_t>(node)].assign(targets.begin(), targets.end());
-    }
+    for (int32_t node = 0; node < graph.nodes(); ++node)
+        edges[static_cast<size_t>(node)] = graph.next_nodes(node);
     return edges;
 }
 
 Edges backward_edges(const MotionGraph& graph) {
     Edges edges(static_cast<size_t>(graph.nodes()));
     for (int32_t node = 0; node < graph.nodes(); ++node) {
-        for (const int32_t target : graph.targets(node)) {
+        for (const int32_t target : graph.next_nodes(node)) {
             edges[static_cast<size_t>(target)].push_back(node);
         }
     }
@@ -114,7 +112,7 @@ StrongComponents strong_components(const MotionGraph& graph) {
         if (name == node) {
             component = static_cast<int32_t>(components.nodes.size());
             components.nodes.emplace_back();
-            components.cyclic.push_back(std::ranges::binary_search(graph.targets(node), node));
+            components.cyclic.push_back(std::ranges::binary_search(graph.next_nodes(node), node));
         } else {
             component = components.component_of[static_cast<size_t>(name)];
             components.cyclic[static_cast<size_t>(component)] = true;
@@ -142,7 +140,7 @@ std::vector<int32_t> shortest_path(const MotionGraph& graph, std::span<const int
     };
     if (sources.empty() || remaining(nearest(sources)) == out_of_reach) return {};
     std::vector<int32_t> path = {nearest(sources)};
-    while (remaining(path.back()) > 0) path.push_back(nearest(graph.targets(path.back())));
+    while (remaining(path.back()) > 0) path.push_back(nearest(graph.next_nodes(path.back())));
     return path;
 }
 

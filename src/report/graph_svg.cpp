@@ -59,6 +59,7 @@ class GraphPicture {
         for (const Ring& ring : rings_) {
             for (const int32_t node : ring.nodes) text += arrows_from(node, ring);
         }
+        for (const NodeLink& link : graph_.links()) text += drawn_link(link);
         for (int32_t node = 0; node < graph_.nodes(); ++node) text += drawn_box(node);
         return text + "</svg>\n";
     }
@@ -202,6 +203,16 @@ class GraphPicture {
         const Point bend{middle.x + 0.25 * (ring.centre.x - middle.x) - 0.12 * y,
                          middle.y + 0.25 * (ring.centre.y - middle.y) + 0.12 * x};
         return fmt::format("M{}Q{} {}", text(border(a, bend)), text(bend), text(border(b, bend)));
+    }
+
+    std::string drawn_link(const NodeLink& link) const {
+        const Point &a = box(link.first).centre, &b = box(link.second).centre;
+        return fmt::format(
+            R"svg(<path d="M{} {}L{} {}" fill="none" stroke="#b86" stroke-width="0.6" )svg"
+            R"svg(stroke-dasharray="4 3"><title>{} as {}</title></path>)svg"
+            "\n",
+            svg_number(a.x), svg_number(a.y), svg_number(b.x), svg_number(b.y),
+            xml_text(nodes_.name_of(link.first)), xml_text(nodes_.name_of(link.second)));
     }
 
     std::string drawn_box(int32_t node) const {

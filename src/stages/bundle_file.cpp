@@ -117,6 +117,20 @@ void write_bundle_graph(ArtifactWriter& file, const StoredBundleGraph& stored) {
     file.write<int64_t>(spec("edges/transition_frames", ElementType::int64, "frames",
                              "between those pairs, all together", "S1 §4"),
                         transition_frames);
+    std::vector<int32_t> first, second;
+    std::vector<double> costs;
+    for (const BundleLink& link : stored.links) {
+        first.push_back(link.first);
+        second.push_back(link.second);
+        costs.push_back(link.cost);
+    }
+    file.write<int32_t>(spec("links/first", ElementType::int32, "1",
+                             "node that holds the same motion as another, of another body"),
+                        first);
+    file.write<int32_t>(spec("links/second", ElementType::int32, "1", "that node"), second);
+    file.write<double>(spec("links/cost", ElementType::float64, "leg lengths",
+                            "mean distance along the warp from one to the other"),
+                       costs);
     const BundleGraphFrames& frames = stored.bundles.frames;
     file.write<int64_t>(
         spec("frames/in_nodes", ElementType::int64, "frames", "of members", "S1 §4"),
@@ -130,12 +144,25 @@ void write_bundle_graph(ArtifactWriter& file, const StoredBundleGraph& stored) {
         std::span(&frames.dangling, 1));
 }
 
+void link_nodes(StoredBundleGraph& graph, std::vector<BundleLink> links) {
+    std::vector<NodeLink> nodes;
+    for (const BundleLink& link : links) nodes.push_back({link.first, link.second});
+    graph.bundles.graph.link(nodes);
+    graph.links = std::move(links);
+}
+
 StoredBundleGraph read_bundle_graph(const ArtifactReader& file, const StoredBundles& bundles) {
     StoredBundleGraph stored;
     stored.node_of = file.read<int32_t>("/bundles/node");
     stored.bundles =
         bundle_graph(bundles.members, stored.node_of,
                      static_cast<int32_t>(file.rows("/nodes/height")), frames_of(bundles.clips));
+    const auto first = file.read<int32_t>("/links/first");
+    const auto second = file.read<int32_t>("/links/second");
+    const auto costs = file.read<double>("/links/cost");
+    std::vector<BundleLink> links;
+    for (size_t i = 0; i < first.size(); ++i) links.push_back({first[i], second[i], costs[i]});
+    link_nodes(stored, std::move(links));
     return stored;
 }
 

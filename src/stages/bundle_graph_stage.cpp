@@ -1,6 +1,8 @@
-// bundle_graph: which motion bundles follow each other (S1 §4).
+// bundle_graph: which motion bundles follow each other (S1 §4), and which of different subjects are
+// the same.
 #include "kinetome/stages/bundle_file.h"
 #include "kinetome/stages/stage.h"
+#include "kinetome/stages/subject_links.h"
 
 namespace kinetome {
 namespace {
@@ -17,20 +19,34 @@ StoredBundleGraph graph_of(const StoredBundles& bundles) {
     return graph;
 }
 
+/// The same links by nodes, which are numbered as bundles are.
+std::vector<BundleLink> between_nodes(std::vector<BundleLink> links,
+                                      const std::vector<int32_t>& node_of) {
+    for (BundleLink& link : links) {
+        link.first = node_of[static_cast<size_t>(link.first)];
+        link.second = node_of[static_cast<size_t>(link.second)];
+    }
+    return links;
+}
+
 }  // namespace
 
 StageResult make_bundle_graph(const StageContext& context, const StageTask& task) {
     StageResult result;
     if (!context.is_root()) return result;
     const ArtifactReader input = context.workspace.open(*task.inputs_of("bundles").front());
-    const StoredBundleGraph graph = graph_of(read_bundles(input));
+    const StoredBundles bundles = read_bundles(input);
+    StoredBundleGraph graph = graph_of(bundles);
+    link_nodes(graph, between_nodes(link_subjects(context, task.inputs_of("frames"), bundles),
+                                    graph.node_of));
     ArtifactWriter file(task.output, task.header, context.writing());
     write_bundle_graph(file, graph);
     const BundleGraphFrames& frames = graph.bundles.frames;
     context.log.info(
-        "bundle_graph: {} nodes, {} edges; {} frames in nodes, {} in transitions, {} dangle",
-        graph.bundles.graph.nodes(), graph.bundles.graph.edges(), frames.in_nodes, frames.in_edges,
-        frames.dangling);
+        "bundle_graph: {} nodes, {} edges, {} links; {} frames in nodes, {} in transitions, {} "
+        "dangle",
+        graph.bundles.graph.nodes(), graph.bundles.graph.edges(), graph.links.size(),
+        frames.in_nodes, frames.in_edges, frames.dangling);
     result.file = file.close();
     return result;
 }

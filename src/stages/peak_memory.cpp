@@ -5,6 +5,7 @@
 
 #include "clip_pipeline.h"
 #include "kinetome/models/bundle_graph.h"
+#include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/models/neighbor_graph.h"
 #include "kinetome/models/placed_signature.h"
 #include "kinetome/models/pose_clusters.h"
@@ -168,6 +169,15 @@ uint64_t bundle_bytes(const CorpusShape& corpus, const ReindexOptions& options,
     return largest + letters * sizeof(BundleMember);
 }
 
+/// Rows by which bundles of subjects are compared, as read and along their main axes.
+uint64_t link_bytes(const CorpusShape& corpus) {
+    constexpr uint64_t bytes_per_row = 2 * 99 * sizeof(float);
+    uint64_t rows = 0;
+    for (const ClipShape& clip : corpus.clips)
+        rows += static_cast<uint64_t>(clip.frames_at(bundle_link_rate));
+    return rows * bytes_per_row;
+}
+
 }  // namespace
 
 uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
@@ -188,7 +198,11 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
         return std::min(at_rest + hierarchy_bytes(corpus, options, resources, ranks),
                         std::max(resources.memory_bytes, at_rest));
     }
-    if (goes_through_bundles(stage)) return at_rest + bundle_bytes(corpus, options, resources);
+    if (stage == "bundle_graph") {
+        return at_rest + bundle_bytes(corpus, options, resources) + link_bytes(corpus) +
+               pipeline_bytes("features", corpus, options, resources);
+    }
+    if (stage == "bundles") return at_rest + bundle_bytes(corpus, options, resources);
     const auto partitions = partition_shapes(corpus, options);
     std::vector<int64_t> rows;
     for (const PartitionShape& partition : partitions) rows.push_back(partition.rows);

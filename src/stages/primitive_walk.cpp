@@ -58,7 +58,7 @@ std::vector<int32_t> require_nodes(const PrimitiveGraph& primitives, const char*
 void require_path(const PrimitiveGraph& primitives, const WalkOptions& options,
                   const std::vector<int32_t>& from, const std::vector<int32_t>& to) {
     if (from.empty() || to.empty()) return;
-    if (!shortest_path(primitives.graph, from, to).empty()) return;
+    if (!shortest_path(primitives.graph, from, primitives.graph.with_linked(to)).empty()) return;
     const auto reached = nodes_reached(primitives.graph, from);
     std::vector<int32_t> there;
     for (const int32_t node : all_nodes(primitives)) {
@@ -106,10 +106,12 @@ void check(const WalkOptions& options) {
 }  // namespace
 
 PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
-                              const ClipSource& source, const WalkOptions& options) {
+                              const ClipSource& source, const WalkOptions& options,
+                              const std::vector<ClusterLink>& links) {
     check(options);
-    const StoredGraph graph = stored_graph(of_one_class(primitives, source, options.from), source,
-                                           options.longest_gap, options.style);
+    StoredGraph graph = stored_graph(of_one_class(primitives, source, options.from), source,
+                                     options.longest_gap, options.style);
+    link_clusters(graph, links);
     const MotionGraph& pieces = graph.nodes.graph;
     const auto from = require_nodes(graph.nodes, "--from", options.from);
     const auto to = require_nodes(graph.nodes, "--to", options.to);
@@ -138,6 +140,8 @@ PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
     for (const WalkStep& step : way.steps) {
         walk.path.push_back(graph.primitives[static_cast<size_t>(step.entry)]);
         walk.nodes.push_back(graph.nodes.name_of(step.node));
+        const int32_t left = pieces.node_of(step.exit);
+        if (left != step.node) walk.nodes.push_back(graph.nodes.name_of(left));
     }
     const auto kept = std::max<int64_t>(std::llround(wanted), 1);
     if (to.empty() && walk.motion.frames() > kept) {

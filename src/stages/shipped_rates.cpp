@@ -52,7 +52,7 @@ serial_share = 0.8
 
 [bundle_graph]
 seconds_per_file = 0.005
-nanoseconds_per_value = 30.0
+nanoseconds_per_value = 15000.0
 serial_share = 1.0
 
 [segments]

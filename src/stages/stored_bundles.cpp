@@ -69,6 +69,22 @@ std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
     return members;
 }
 
+std::vector<ClusterLink> stored_bundle_links(const Generation& generation) {
+    require_bundles(generation);
+    const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
+    const StoredBundleGraph graph = read_bundle_graph(generation.open("bundle_graph.h5"), bundles);
+    std::vector<int32_t> bundle_of;  // by node
+    for (size_t bundle = 0; bundle < graph.node_of.size(); ++bundle) {
+        if (graph.node_of[bundle] >= 0) bundle_of.push_back(static_cast<int32_t>(bundle));
+    }
+    std::vector<ClusterLink> links;
+    for (const BundleLink& link : graph.links) {
+        links.push_back({bundle_of[static_cast<size_t>(link.first)],
+                         bundle_of[static_cast<size_t>(link.second)]});
+    }
+    return links;
+}
+
 Table bundle_list(const OpenStore& open, const std::filesystem::path& labels) {
     const Generation& generation = open.generation;
     const WalkOptions walk = options_of_bundle_walk({});

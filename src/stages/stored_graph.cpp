@@ -83,7 +83,12 @@ std::string write_json(const StoredGraph& graph) {
     for_each_edge(graph.nodes.graph, [&](int32_t from, int32_t to, const auto& successions) {
         edges.push_back({{"from", from}, {"to", to}, {"successions", successions.size()}});
     });
-    const Json whole = {{"nodes", std::move(nodes)}, {"edges", std::move(edges)}};
+    Json links = Json::array();
+    for (const NodeLink& link : graph.nodes.graph.links()) {
+        links.push_back({{"first", link.first}, {"second", link.second}});
+    }
+    const Json whole = {
+        {"nodes", std::move(nodes)}, {"edges", std::move(edges)}, {"links", std::move(links)}};
     // Bytes that are no UTF-8 have no JSON: a reader gets U+FFFD.
     return whole.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -127,6 +132,11 @@ std::string write_dot(const StoredGraph& graph) {
         fmt::format_to(std::back_inserter(text), "  n{} -> n{} [label={}];\n", from, to,
                        successions.size());
     });
+    for (const NodeLink& link : graph.nodes.graph.links()) {
+        fmt::format_to(std::back_inserter(text),
+                       "  n{} -> n{} [dir=none, style=dashed, constraint=false];\n", link.first,
+                       link.second);
+    }
     return text + "}\n";
 }
 
@@ -166,6 +176,19 @@ StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource
     graph.nodes.style = style;
     graph.primitives = std::move(primitives);
     return graph;
+}
+
+void link_clusters(StoredGraph& graph, const std::vector<ClusterLink>& links) {
+    std::map<int32_t, int32_t> node_of;
+    for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node)
+        node_of[cluster_of(graph, node)] = node;
+    std::vector<NodeLink> nodes;
+    for (const auto& [first, second] : links) {
+        const auto one = node_of.find(first), other = node_of.find(second);
+        if (one != node_of.end() && other != node_of.end())
+            nodes.push_back({one->second, other->second});
+    }
+    graph.nodes.graph.link(nodes);
 }
 
 GraphFormat parse_graph_format(std::string_view name) {

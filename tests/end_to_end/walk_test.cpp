@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "kinetome/store/json_text.h"
 #include "program.h"
 #include "store_on_disk.h"
 #include "support/temporary_folder.h"
@@ -317,4 +318,42 @@ TEST_CASE("a store without primitives says what makes them", "[walk]") {
                    "no primitives yet; kinetome reindex"));
     CHECK(contains(require_program({"export", store, "primitive-graph"}, usage).errors,
                    "no primitives yet; kinetome reindex"));
+}
+
+TEST_CASE("a walk leads from the bundles of one body to those of another", "[walk]") {
+    const TemporaryFolder folder;
+    const std::string store = (folder / "store").string(), output = (folder / "w.bvh").string();
+    require_program({"generate", "--frames", "16000", "--seed", "5", "--subjects", "2", "-o",
+                     (folder / "takes").string()});
+    require_program(reindex(folder / "takes", store,
+                            {"--partition", "subject", "--only",
+                             "frames,features,pose_clusters,motion_strings,bundles,"
+                             "bundle_graph"}));
+    const std::string dot =
+        require_program({"export", store, "bundle-graph", "--format", "dot"}).output;
+    CHECK(contains(dot, "style=dashed"));
+
+    std::map<std::string, std::string> subject_of;  // of bundles
+    for (const std::string& row : lines_of(require_program({"export", store, "bundles"}).output)) {
+        const size_t comma = row.find(',');
+        subject_of[row.substr(0, comma)] = row.substr(comma + 1, 2);
+    }
+    const kinetome::Json graph = kinetome::Json::parse(
+        require_program({"export", store, "bundle-graph", "--format", "json"}).output);
+    REQUIRE(!graph["links"].empty());
+    const auto bundle = [&](const kinetome::Json& node) {
+        return std::to_string(graph["nodes"][node.get<size_t>()]["cluster"].get<int>());
+    };
+    for (const kinetome::Json& link : graph["links"]) {
+        CHECK(subject_of.at(bundle(link["first"])) != subject_of.at(bundle(link["second"])));
+    }
+    // From a bundle that is linked into the other body.
+    const std::string from = bundle(graph["links"][0]["first"]);
+    const std::string to = bundle(graph["links"][0]["second"]);
+    const CommandResult walked = require_program({"walk", store, "--graph", "bundles", "--seconds",
+                                                  "1", "--from", from, "--to", to, "-o", output});
+    CHECK(contains(walked.output, "bundle " + from));
+    CHECK(contains(walked.output, "bundle " + to));
+    CHECK(contains(walked.output, "on the body of " + subject_of.at(from)));
+    check_quality(store, "bundles", output);
 }

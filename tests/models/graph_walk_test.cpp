@@ -232,3 +232,36 @@ TEST_CASE("a crossing near the end of a piece is moved until the fade fits") {
     CHECK(runs_of_walk(graph, steps, 10, crossing) ==
           std::vector<MotionRun>{{0, 0, 40, 0, 8}, {1, 100, 200, 12, 0}});
 }
+
+TEST_CASE("a walk goes from one body's motions to another's by linked nodes") {
+    MotionGraph graph = graph_of({"abab", "cdcd"}, 4);
+    const WalkRequest request{.frames = 60, .from = {0}, .to = {3}};
+    CHECK(random_walk(graph, request).steps.empty());
+    graph.link(std::vector<NodeLink>{{1, 2}});
+    for (uint64_t seed = 0; seed < 10; ++seed) {
+        WalkRequest seeded = request;
+        seeded.seed = seed;
+        const GraphWalk walk = random_walk(graph, seeded);
+        REQUIRE(walk.steps.size() > 1);
+        CHECK(walk.steps.front().node == 0);
+        CHECK(walk.steps.back().node == 3);
+        int crossed = 0;
+        for (size_t i = 0; i + 1 < walk.steps.size(); ++i) {
+            const WalkStep& step = walk.steps[i];
+            const auto ways = graph.ways_on(step.node);
+            CHECK(std::ranges::count(ways, Succession{step.exit, walk.steps[i + 1].entry}) == 1);
+            crossed += step.node == 1 && graph.node_of(step.exit) == 2;
+        }
+        CHECK(crossed > 0);
+    }
+}
+
+TEST_CASE("a walk ends in a wanted node by going over from one that is linked with it") {
+    MotionGraph graph = graph_of({"ab", "dc"}, 4);
+    graph.link(std::vector<NodeLink>{{1, 2}});
+    const GraphWalk walk = random_walk(graph, {.frames = 10, .from = {0}, .to = {2}});
+    CHECK(letters(walk) == "ab");
+    CHECK(graph.node_of(walk.steps.back().entry) == 1);
+    CHECK(graph.node_of(walk.steps.back().exit) == 2);
+    CHECK(runs_of_walk(graph, walk.steps, 4).back().clip == 1);
+}

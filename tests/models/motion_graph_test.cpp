@@ -136,3 +136,30 @@ TEST_CASE("of equally short paths the one with the lowest nodes is taken, of end
     CHECK(shortest_path(graph, std::vector{4}, std::vector{0, 3}).empty());
     CHECK(shortest_path(graph, std::vector<int32_t>{}, std::vector{0}).empty());
 }
+
+TEST_CASE("a node leads where those linked with it do") {
+    MotionGraph graph = graph_of(6, {{0, 1}, {2, 3}, {3, 2}, {4, 5}});
+    CHECK(graph.next_nodes(1).empty());
+    CHECK(shortest_path(graph, std::vector<int32_t>{0}, std::vector<int32_t>{3}).empty());
+    graph.link(std::vector<NodeLink>{{2, 1}, {1, 2}, {1, 4}});
+    CHECK(graph.links() == std::vector<NodeLink>{{1, 2}, {1, 4}});
+    CHECK(to_vector(graph.linked(1)) == std::vector<int32_t>{2, 4});
+    CHECK(graph.with_linked(std::vector<int32_t>{2, 3}) == std::vector<int32_t>{1, 2, 3});
+    CHECK(graph.next_nodes(1) == std::vector<int32_t>{3, 5});
+    CHECK(graph.ways_on(1).size() == 2);
+    CHECK(to_vector(graph.targets(1)).empty());  // its own edges stay its own
+    CHECK(shortest_path(graph, std::vector<int32_t>{0}, std::vector<int32_t>{3}) ==
+          std::vector<int32_t>{0, 1, 3});
+    CHECK(nodes_reached(graph, std::vector<int32_t>{0}) ==
+          std::vector<bool>{true, true, true, true, false, true});
+    CHECK(nodes_that_reach(graph, std::vector<int32_t>{5}) ==
+          std::vector<bool>{true, true, false, false, true, true});
+    const StrongComponents components = strong_components(graph);
+    CHECK(components.component_of == std::vector<int32_t>{0, 1, 2, 2, 3, 4});
+    CHECK(components.cyclic == std::vector<bool>{false, false, true, false, false});
+    graph.link({});
+    CHECK(graph.links().empty());
+    CHECK_THROWS_AS(graph.link(std::vector<NodeLink>{{1, 6}}), std::invalid_argument);
+    CHECK_THROWS_AS(graph.link(std::vector<NodeLink>{{-1, 1}}), std::invalid_argument);
+    CHECK_THROWS_AS(graph.link(std::vector<NodeLink>{{1, 1}}), std::invalid_argument);
+}

@@ -108,3 +108,13 @@ TEST_CASE("boxes of primitives have room for their names, however short their mo
     CHECK_THAT(picture, Contains(">walk (cluster 0)</text>"));
     CHECK_THAT(picture, Contains(">cluster 2</text>"));
 }
+
+TEST_CASE("links of nodes are dashed lines under the boxes, in a well-formed picture") {
+    PrimitiveGraph graph = toy_graph();
+    CHECK(count(graph_svg("toy", graph, 120), "stroke-dasharray") == 0);
+    graph.graph.link(std::vector<NodeLink>{{0, 3}});
+    const std::string picture = graph_svg("toy", graph, 120);
+    CHECK(count(picture, "stroke-dasharray") == 1);
+    CHECK_THAT(picture, Contains("<title>walk (bundle 0) as &lt;b&gt;&amp;"));
+    CHECK(XmlReader(picture).is_well_formed());
+}

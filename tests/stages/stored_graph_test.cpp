@@ -70,6 +70,18 @@ TEST_CASE("the adjacency as DOT quotes what labels hold") {
     CHECK_THROWS_AS(parse_graph_format("png"), UsageError);
 }
 
+TEST_CASE("links of clusters join the nodes that a graph has of them, and are told apart") {
+    StoredGraph graph = example();
+    link_clusters(graph, {{4, 2}, {4, 7}});
+    CHECK(graph.nodes.graph.links() == std::vector<NodeLink>{{0, 1}});
+    const Json whole = Json::parse(write_graph(graph, GraphFormat::json));
+    CHECK(whole["links"] == Json::array({Json{{"first", 0}, {"second", 1}}}));
+    CHECK(whole["edges"].size() == 3);
+    CHECK(write_graph(graph, GraphFormat::dot)
+              .ends_with("  n0 -> n1 [dir=none, style=dashed, constraint=false];\n}\n"));
+    CHECK(write_graph(graph, GraphFormat::csv) == write_graph(example(), GraphFormat::csv));
+}
+
 TEST_CASE("a primitive has the label that covers most of it, if that is half") {
     std::vector<ClipPrimitive> primitives = {
         {"one", 0, 100, 0}, {"one", 100, 200, 0}, {"one", 200, 300, 0, "kept"}, {"two", 0, 100, 0}};

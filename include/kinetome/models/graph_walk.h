@@ -21,10 +21,12 @@ struct WalkRequest {
     std::function<double(int32_t entry, int32_t exit)> excess = {};
 };
 
-/// A node is entered by one of its pieces and left by another, or by the same.
+/// A node is entered by one of its pieces and left by another, by the same, or by one of a node
+/// that is linked with it.
 struct WalkStep {
     int32_t node = 0;
-    int32_t entry = 0, exit = 0;  ///< pieces; equal in the last step
+    int32_t entry = 0, exit = 0;  ///< pieces; equal in the last step, unless the walk ends in a
+                                  ///< node that is linked with a wanted one, and goes over
     bool operator==(const WalkStep&) const = default;
 };
 
@@ -35,7 +37,8 @@ struct GraphWalk {
     bool ended_early = false;
 };
 
-/// Goes from node to node as the takes do: each succession out of a node is as likely as any other.
+/// Goes from node to node as the takes do: each succession out of a node, or out of one linked with
+/// it, is as likely as any other.
 /// Those with an excess are not taken; where a walk could go on with excess only, it goes back and
 /// takes another way. What excess is left is on the way to `to`, or in graphs without another way.
 /// It keeps to nodes from which one of `to` can be reached, and does not get stuck while there is a

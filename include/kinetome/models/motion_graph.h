@@ -24,6 +24,13 @@ struct Succession {
     bool operator==(const Succession&) const = default;
 };
 
+/// Two nodes that hold the same motion of different bodies: pieces of the one may be exchanged for
+/// pieces of the other, too.
+struct NodeLink {
+    int32_t first = 0, second = 0;
+    bool operator==(const NodeLink&) const = default;
+};
+
 /// Nodes are groups of pieces so alike that one may be exchanged for another; an edge says that
 /// some piece of the one node is followed by some piece of the other, and keeps all those that are.
 class MotionGraph {
@@ -55,6 +62,20 @@ class MotionGraph {
     /// Frames between the two, in their clip.
     int64_t gap(const Succession& succession) const;
 
+    /// Links nodes, instead of those linked before; one pair may be named several times. Throws
+    /// std::invalid_argument for a node that is not there, or linked with itself.
+    void link(std::span<const NodeLink> links);
+    /// Each pair once, the lower node first, ascending.
+    std::vector<NodeLink> links() const;
+    /// Nodes linked with a node, ascending.
+    std::span<const int32_t> linked(int32_t node) const;
+    /// Those nodes and those linked with them, ascending.
+    std::vector<int32_t> with_linked(std::span<const int32_t> nodes) const;
+    /// How a node may be left: by its own successions, then by those of the nodes linked with it.
+    std::vector<Succession> ways_on(int32_t node) const;
+    /// Nodes that these lead to, ascending.
+    std::vector<int32_t> next_nodes(int32_t node) const;
+
   private:
     std::vector<MotionPiece> pieces_;
     std::vector<int32_t> node_of_;
@@ -64,7 +85,11 @@ class MotionGraph {
     std::vector<int64_t> edges_of_{0};             ///< nodes + 1, into targets_
     std::vector<Succession> successions_;          ///< by edge
     std::vector<int64_t> successions_of_edge_{0};  ///< edges + 1, into successions_
+    std::vector<int32_t> linked_;                  ///< by node
+    std::vector<int64_t> links_of_;                ///< nodes + 1, into linked_
 };
+
+// What leads where is said of next_nodes here: a linked node's edges are a node's, too.
 
 /// Largest sets of nodes that all lead to one another, numbered by their lowest node.
 struct StrongComponents {

@@ -11,8 +11,8 @@ namespace kinetome {
 /// style.boxes_by_size as wide as its mean length and as high as the root of its number of pieces
 /// (√B_h × B_w of S1), else as wide as its name; nodes that a walk can come back to are blue,
 /// others grey. Nodes that arrows join lie on one ring, in an order that follows the most frequent
-/// successions. Names are written into boxes with room for them and shown when pointed at. `rate`:
-/// frames a second of the graph's pieces.
+/// successions; linked nodes are joined by dashed lines. Names are written into boxes with room for
+/// them and shown when pointed at. `rate`: frames a second of the graph's pieces.
 std::string graph_svg(const std::string& title, const PrimitiveGraph& graph, double rate);
 
 }  // namespace kinetome

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinetome/models/bundle_graph.h"
+#include "kinetome/models/bundle_links.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/store/artifact.h"
 
@@ -31,11 +32,14 @@ StoredBundles read_bundles(const ArtifactReader& file);
 
 /// The graph, and the node of each bundle; -1: it is degenerate, and lies on an edge or dangles.
 struct StoredBundleGraph {
-    BundleGraph bundles;
+    BundleGraph bundles;  ///< its nodes linked
     std::vector<int32_t> node_of;
+    std::vector<BundleLink> links;  ///< of nodes
 };
 
 void write_bundle_graph(ArtifactWriter& file, const StoredBundleGraph& graph);
+/// Links them in the graph, too.
+void link_nodes(StoredBundleGraph& graph, std::vector<BundleLink> links);
 /// The nodes that bundle_graph.h5 names, with the members in bundles.h5.
 StoredBundleGraph read_bundle_graph(const ArtifactReader& file, const StoredBundles& bundles);
 

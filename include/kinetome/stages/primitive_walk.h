@@ -26,19 +26,21 @@ struct PrimitiveWalk {
     Clip motion;
     std::string body;                      ///< clip whose skeleton it is
     std::vector<ClipPrimitive> path = {};  ///< one a step: the primitive that enters its node
-    std::vector<std::string> nodes = {};   ///< one a step
+    std::vector<std::string> nodes = {};   ///< one a step, two where it goes over into a linked one
     WalkQuality quality = {};
     bool ended_early = false;  ///< nothing follows the last primitive that leads to a wanted end
 };
 
 /// Through the primitives of one class of skeletons: that of most of those that `from` names, or of
-/// most. Clips of other bodies are put on the one that moves (retarget.h), clips of other rates are
-/// resampled. It goes over from one primitive of a node to another where they agree best
-/// (best_crossing), feet held where they stand (MotionBlend), and only where no pose changes
+/// most. Linked clusters are left by each other's primitives, so that the motion of one body leads
+/// to that of another. Clips of other bodies are put on the one that moves (retarget.h), clips of
+/// other rates are resampled. It goes over from one primitive of a node to another where they agree
+/// best (best_crossing), feet held where they stand (MotionBlend), and only where no pose changes
 /// faster than in pieces of the two clips, as long as there is such a way on. Without `to` the
 /// motion is cut to the wanted length. Throws UsageError for options that make no sense, for a
 /// label or cluster that is not there, and when no path leads from the one to the other.
 PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
-                              const ClipSource& source, const WalkOptions& options);
+                              const ClipSource& source, const WalkOptions& options,
+                              const std::vector<ClusterLink>& links = {});
 
 }  // namespace kinetome

@@ -19,6 +19,10 @@ namespace kinetome {
 std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
                                                  const std::filesystem::path& labels = {});
 
+/// Bundles of different bodies that hold the same motion, by their numbers. Throws UsageError when
+/// the generation has no bundles.
+std::vector<ClusterLink> stored_bundle_links(const Generation& generation);
+
 /// Bundles that are nodes, those of largest volume (S1 Eq. 3, the generation's ρ) first:
 /// bundle,label,height,width,volume,takes; the label that most members have (label_from_table), the
 /// width in frames at the rate of most members. Throws UsageError when the generation has none.

@@ -43,10 +43,18 @@ struct StoredGraph {
     double rate = 0;                 ///< frames a second of the graph's pieces: of most primitives
 };
 
+/// Two clusters or bundles that hold the same motion of different bodies, by their numbers.
+struct ClusterLink {
+    int32_t first = 0, second = 0;
+};
+
 /// `longest_gap`: seconds between two primitives of which one follows the other. Throws what
 /// source.kind does, and UsageError when there are no primitives.
 StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource& source,
                          double longest_gap, const GraphStyle& style = {});
+
+/// Links the nodes of those clusters of which the graph holds both.
+void link_clusters(StoredGraph& graph, const std::vector<ClusterLink>& links);
 
 /// Gives each primitive the label that covers most of its frames, of equal ones the first by
 /// alphabet, where it covers at least half of them; the others keep theirs. Rows are in frames of
@@ -73,8 +81,8 @@ GraphFormat parse_graph_format(std::string_view name);
 /// The adjacency of its nodes, by node, and all that stands for it. CSV: a line a succession of two
 /// primitives, `from_node,to_node,from_cluster,to_cluster,from_label,to_label,clip,from_first,
 /// from_end,to_first,to_end`; JSON: nodes with their primitives and strong components, edges with
-/// their numbers of successions; DOT: the same for Graphviz; SVG: a picture (graph_svg). Frames at
-/// the sources' rates.
+/// their numbers of successions, links of nodes; DOT: the same for Graphviz, links dashed; SVG: a
+/// picture (graph_svg). Frames at the sources' rates.
 std::string write_graph(const StoredGraph& graph, GraphFormat format);
 
 }  // namespace kinetome
