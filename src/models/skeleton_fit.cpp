@@ -50,8 +50,8 @@ void SkeletonFit::differentiate(std::span<float> dofs, const VectorD& at) {
     }
 }
 
-void SkeletonFit::fit(std::span<const float> positions, std::span<const float> rest,
-                      std::span<float> dofs) {
+double SkeletonFit::fit(std::span<const float> positions, std::span<const float> rest,
+                        std::span<float> dofs) {
     if (static_cast<Eigen::Index>(positions.size()) != targets_.size() ||
         static_cast<Eigen::Index>(rest.size()) != rest_.size() || rest.size() != dofs.size()) {
         throw std::invalid_argument("a skeleton is fitted to positions of its own joints");
@@ -77,16 +77,34 @@ void SkeletonFit::fit(std::span<const float> positions, std::span<const float> r
         VectorD there;
         residuals(next, there);
         if (!(there.squaredNorm() < here.squaredNorm())) {
-            if (step.cwiseAbs().maxCoeff() < options_.close) return;
+            if (step.cwiseAbs().maxCoeff() < options_.close) break;
             damping = damping * 100 + 1e-6;
             continue;
         }
         std::copy(next.begin(), next.end(), dofs.begin());
         here = there;
         damping /= 10;
-        if (step.cwiseAbs().maxCoeff() < options_.close) return;
+        if (step.cwiseAbs().maxCoeff() < options_.close) break;
+    }
+    return here.squaredNorm();
+}
+
+namespace {
+
+/// From far away the steps that a frame takes from the one before do not lead all the way.
+void fit_from_afar(SkeletonFit& fit, std::span<const float> positions, std::span<const float> rest,
+                   std::span<float> dofs) {
+    constexpr int most_times = 50;
+    constexpr double least_gain = 1e-3;  // of what is left
+    double left = fit.fit(positions, rest, dofs);
+    for (int time = 1; time < most_times; ++time) {
+        const double before = left;
+        left = fit.fit(positions, rest, dofs);
+        if (left > (1 - least_gain) * before) return;
     }
 }
+
+}  // namespace
 
 MatrixF fit_frames(SkeletonFit& fit, const MatrixFView& positions, std::span<const float> start,
                    std::span<const float> end, int64_t frames) {
@@ -99,7 +117,10 @@ MatrixF fit_frames(SkeletonFit& fit, const MatrixFView& positions, std::span<con
         }
         const std::span<const float> row(positions.data() + i * positions.outerStride(),
                                          static_cast<size_t>(positions.cols()));
-        fit.fit(row, rest, dofs);
+        if (i == 0)
+            fit_from_afar(fit, row, rest, dofs);
+        else
+            fit.fit(row, rest, dofs);
         std::copy(dofs.begin(), dofs.end(), motion.row(i).data());
     }
     return motion;

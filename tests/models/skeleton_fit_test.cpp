@@ -48,6 +48,20 @@ TEST_CASE("a skeleton comes as near as it can to places it cannot reach") {
     CHECK((reached - positions).norm() < (joint_positions(clip) - positions).norm() / 2);
 }
 
+TEST_CASE("a first frame far from where the fit begins is reached, too") {
+    for (const int64_t take : {1, 2, 3, 4}) {
+        const Clip clip = perform(plan_take(take, 60, 1, 1, 9), make_subject(1, 9), 9);
+        const MatrixF positions = joint_positions(clip);
+        VectorF start = VectorF::Zero(clip.motion.cols());
+        start.head(6) = clip.motion.row(0).head(6);  // the root alone stands where it is
+        const std::span<const float> from(start.data(), static_cast<size_t>(start.size()));
+        SkeletonFit fit(clip.skeleton);
+        Clip fitted = clip;
+        fitted.motion = fit_frames(fit, positions, from, from, clip.frames());
+        CHECK((joint_positions(fitted) - positions).row(0).cwiseAbs().maxCoeff() < 1);
+    }
+}
+
 TEST_CASE("positions of another skeleton are refused") {
     const Clip clip = perform(plan_take(2, 30, 1, 1, 9), make_subject(1, 9), 9);
     SkeletonFit fit(clip.skeleton);

@@ -26,9 +26,10 @@ class SkeletonFit {
 
     /// Degrees of freedom (cm, radians) that minimise the squared distances of all joints to
     /// `positions` (3 · joint_count, cm) and, far behind, of angles to `rest`: by Levenberg and
-    /// Marquardt's method from `dofs`, which are replaced. Throws std::invalid_argument for other
-    /// sizes.
-    void fit(std::span<const float> positions, std::span<const float> rest, std::span<float> dofs);
+    /// Marquardt's method from `dofs`, which are replaced. Returns what is left of that sum. Throws
+    /// std::invalid_argument for other sizes.
+    double fit(std::span<const float> positions, std::span<const float> rest,
+               std::span<float> dofs);
 
   private:
     /// Joints minus `positions`, then weighted angles minus `rest`.
