@@ -56,6 +56,8 @@ std::string_view advice_for(int error_number) {
         case ENOENT:
         case ENOTDIR:
             return "check that the folder exists";
+        case EISDIR:
+            return "name a file, not a folder";
         default:
             return "check the disk, then run the same command again";
     }
@@ -117,6 +119,12 @@ class TemporaryFile {
     bool renamed_ = false;
 };
 
+/// A pipe or a device, which no file may take the place of.
+void write_into(const fs::path& path, std::string_view text) {
+    const Descriptor file(path, O_WRONLY);
+    if (!file.valid() || !write_all(file, text)) throw create_error("write", path, errno);
+}
+
 fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -142,10 +150,15 @@ void read_blocks(const fs::path& path, const std::function<void(std::string_view
 }
 
 void write_file_atomically(const fs::path& path, std::string_view text) {
-    TemporaryFile file(path);
+    std::error_code none;
+    const fs::path target = fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
+    const fs::file_status there = fs::status(target, none);
+    if (fs::is_directory(there)) throw create_error("replace", target, EISDIR);
+    if (fs::exists(there) && !fs::is_regular_file(there)) return write_into(target, text);
+    TemporaryFile file(target);
     file.write(text);
     file.sync_and_rename();
-    fsync_directory(folder_of(path));
+    fsync_directory(folder_of(target));
 }
 
 void copy_to_new_file(const fs::path& source, const fs::path& target) {

@@ -37,6 +37,8 @@ struct Command {
     std::function<Run(CLI::App& app)> set_up;
     /// Every rank runs it, and rank 0's answer counts; else rank 0 runs it and the others wait.
     bool uses_ranks = false;
+    /// It has no work to keep: asked to stop, it ends at once.
+    bool reads_only = false;
 };
 
 Command reindex_command();

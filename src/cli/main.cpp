@@ -32,12 +32,30 @@ std::string command_line(int argc, char** argv) {
     return line;
 }
 
+Command reading(Command command) {
+    command.reads_only = true;
+    return command;
+}
+
 std::vector<Command> all_commands() {
-    return {reindex_command(),  ingest_command(),    plan_command(),     publish_command(),
-            generate_command(), info_command(),      verify_command(),   gc_command(),
-            diff_command(),     export_command(),    evaluate_command(), label_command(),
-            estimate_command(), bundles_command(),   walk_command(),     query_command(),
-            compress_command(), decompress_command()};
+    return {reindex_command(),
+            ingest_command(),
+            plan_command(),
+            publish_command(),
+            generate_command(),
+            reading(info_command()),
+            reading(verify_command()),
+            reading(diff_command()),
+            gc_command(),
+            bundles_command(),
+            reading(query_command()),
+            reading(walk_command()),
+            reading(label_command()),
+            reading(estimate_command()),
+            reading(compress_command()),
+            reading(decompress_command()),
+            reading(export_command()),
+            reading(evaluate_command())};
 }
 
 /// All ranks refuse alike; rank 0 says why.
@@ -76,7 +94,8 @@ ExitCode run_main(int argc, char** argv, const Launch& launch, StopToken stop,
     for (const Command& command : all_commands()) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
         sub->footer("Example:\n  " + command.example);
-        choices.emplace_back(sub, ChosenCommand{command.set_up(*sub), command.uses_ranks, again});
+        choices.emplace_back(sub, ChosenCommand{command.set_up(*sub), command.uses_ranks,
+                                                command.reads_only, again});
         add_common_options(*sub, common);
     }
     try {

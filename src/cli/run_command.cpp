@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <exception>
 #include <system_error>
 
 #include "kinetome/run/node_share.h"
+#include "signals.h"
+#include "write_text.h"
 
 namespace kinetome::cli {
 namespace {
@@ -60,10 +60,15 @@ void open_log(const LogOptions& options, Log& log) {
     if (!options.file.empty()) log.add_file(options.file);
 }
 
-void flush_output() {
-    // A reader that has seen enough (`| head`) is no error.
-    if (std::fflush(stdout) != 0 && errno != EPIPE) {
-        throw StoreError("standard output: cannot write: is its disk full?");
+/// As write_text and flush_output have it, for what is printed directly.
+ExitCode run_to_the_end(const ChosenCommand& command, const Invocation& invocation) {
+    try {
+        const ExitCode code = command.run(invocation);
+        flush_output();
+        return code;
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::broken_pipe) throw;
+        return ExitCode::success;
     }
 }
 
@@ -73,14 +78,14 @@ ExitCode run_command(const ChosenCommand& command, const CommonOptions& common,
                      const Launch& launch, StopToken stop, Communicator& ranks) {
     Log log;
     try {
+        if (command.reads_only) stop_watching_signals();
         ExitCode code = ExitCode::success;
         if (command.uses_ranks || ranks.is_root()) {
             open_log(log_options(common.log, ranks), log);
             SerialCommunicator alone;
             Communicator& carriers = command.uses_ranks ? ranks : alone;
-            code = command.run({common, log, stop, carriers, node_share(carriers),
-                                [&] { require_joined(launch, ranks); }});
-            flush_output();
+            code = run_to_the_end(command, {common, log, stop, carriers, node_share(carriers),
+                                            [&] { require_joined(launch, ranks); }});
         }
         return static_cast<ExitCode>(
             std::stoi(ranks.broadcast(std::to_string(static_cast<int>(code)))));

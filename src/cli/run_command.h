@@ -12,6 +12,7 @@ namespace kinetome::cli {
 struct ChosenCommand {
     Run run;
     bool uses_ranks = false;
+    bool reads_only = false;
     std::string command_line;  ///< as a shell would take it again
 };
 

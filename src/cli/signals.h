@@ -10,4 +10,7 @@ namespace kinetome::cli {
 /// Writing to a closed pipe or beyond a file-size limit becomes an error like any other.
 StopToken watch_signals();
 
+/// From now on those signals end the process again.
+void stop_watching_signals();
+
 }  // namespace kinetome::cli

@@ -92,6 +92,24 @@ TEST_CASE("a rename that fails leaves no temporary file") {
     CHECK(names_in(folder.path()) == std::vector<std::string>{"taken"});
 }
 
+TEST_CASE("a pipe or a link that is written to stays what it is") {
+    const TemporaryFolder folder;
+    const std::filesystem::path pipe = folder / "pipe", link = folder / "link";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    std::string read;
+    std::thread reader([&] { read = read_file(pipe); });
+    write_file_atomically(pipe, "through the pipe");
+    reader.join();
+    CHECK(read == "through the pipe");
+    CHECK(std::filesystem::is_fifo(pipe));
+
+    folder.write("linked", "old");
+    std::filesystem::create_symlink("linked", link);
+    write_file_atomically(link, "new");
+    CHECK(std::filesystem::is_symlink(link));
+    CHECK(read_file(folder / "linked") == "new");
+}
+
 TEST_CASE("writing into a missing folder says which and what to check") {
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(write_file_atomically(folder / "no" / "file", "text"),

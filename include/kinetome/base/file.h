@@ -24,6 +24,7 @@ void read_blocks(const std::filesystem::path& path,
 
 /// Replaces the file by `text`: temporary file in the same folder, write, sync, rename, sync of the
 /// folder. Throws CreateError; then the temporary is gone and what was at `path` is still there.
+/// Links are followed; into a pipe or a device the text is written as it is.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
 /// Copies a file of the store to a name where nothing is yet. Not synced. Throws StoreError for the
