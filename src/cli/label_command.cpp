@@ -7,6 +7,7 @@
 #include "command.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
+#include "kinetome/base/quote.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/stored_labels.h"
 #include "write_text.h"
@@ -26,6 +27,8 @@ std::vector<CycleRow> read_labels(const std::filesystem::path& file) {
 }
 
 Table make_table(const LabelFlags& flags, int threads) {
+    if (!flags.known_takes.empty() && (flags.truth.empty() || !flags.from.empty()))
+        throw UsageError("--known-takes: expected beside --truth, without --from");
     const OpenStore open(flags.store, flags.generation);
     std::vector<ClipPrimitive> primitives = stored_primitives(open, flags.from);
     const PrimitiveFeatures features = read_primitive_features(open.generation);
@@ -34,6 +37,14 @@ Table make_table(const LabelFlags& flags, int threads) {
     if (!flags.truth.empty() && !any_known) {
         return label_tables(features, primitives, read_labels(flags.truth), flags.known_takes,
                             flags.transfer, threads);
+    }
+    if (!any_known && !flags.from.empty()) {
+        throw Error(ExitCode::nothing_usable,
+                    fmt::format("{}: none of its rows meets a primitive of the store: are its "
+                                "clips those of `kinetome export {} primitives`, and its frames "
+                                "those of the source?",
+                                path_for_message(flags.from.string()),
+                                path_for_message(flags.store.string())));
     }
     if (!any_known) {
         throw UsageError(fmt::format(

@@ -1,5 +1,6 @@
 #include "kinetome/formats/annotation.h"
 
+#include "kinetome/base/error.h"
 #include "kinetome/formats/csv_table.h"
 
 namespace kinetome {
@@ -12,12 +13,21 @@ int64_t frame_field(const CsvRecord& record, size_t field, const std::string& pa
     return whole_number_field(record, field, "a frame number", path);
 }
 
+void require_frames(int64_t first, int64_t end, const CsvRecord& record, const std::string& path) {
+    if (first < end) return;
+    throw InputError::at_line(path, record.line,
+                              "expected an end after frame " + std::to_string(first) + ", found " +
+                                  std::to_string(end) + " (it is the frame after the last)");
+}
+
 CycleRow cycle_row(const CsvRecord& record, const std::string& path) {
-    return {.clip = from_csv_text(record.fields[0]),
-            .first = frame_field(record, 1, path),
-            .end = frame_field(record, 2, path),
-            .label = from_csv_text(record.fields[3]),
-            .line = record.line};
+    const CycleRow row{.clip = from_csv_text(record.fields[0]),
+                       .first = frame_field(record, 1, path),
+                       .end = frame_field(record, 2, path),
+                       .label = from_csv_text(record.fields[3]),
+                       .line = record.line};
+    require_frames(row.first, row.end, record, path);
+    return row;
 }
 
 }  // namespace
@@ -48,14 +58,18 @@ std::string write_cycles_csv(const std::vector<CycleRow>& rows) {
 
 std::vector<TruthRow> parse_truth_csv(std::string_view text, const std::string& path) {
     std::vector<TruthRow> rows;
-    for (const CsvRecord& record : parse_csv_table(text, path, truth_header))
-        rows.push_back({.clip = from_csv_text(record.fields[0]),
-                        .first = frame_field(record, 1, path),
-                        .end = frame_field(record, 2, path),
-                        .label = from_csv_text(record.fields[3]),
-                        .end_lo = frame_field(record, 4, path),
-                        .end_hi = frame_field(record, 5, path),
-                        .line = record.line});
+    for (const CsvRecord& record : parse_csv_table(text, path, truth_header)) {
+        const TruthRow& row = rows.emplace_back(TruthRow{.clip = from_csv_text(record.fields[0]),
+                                                         .first = frame_field(record, 1, path),
+                                                         .end = frame_field(record, 2, path),
+                                                         .label = from_csv_text(record.fields[3]),
+                                                         .end_lo = frame_field(record, 4, path),
+                                                         .end_hi = frame_field(record, 5, path),
+                                                         .line = record.line});
+        require_frames(row.first, row.end, record, path);
+        if (row.label.empty())
+            throw InputError::at_line(path, record.line, "expected a label, found none");
+    }
     return rows;
 }
 

@@ -19,6 +19,13 @@ namespace {
     throw InputError::at_line(path, 1, how + expected);
 }
 
+/// Spreadsheets put one before the header, where no one sees it.
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.starts_with(mark)) text.remove_prefix(mark.size());
+    return text;
+}
+
 /// Those below the header line.
 std::vector<CsvRecord> records_like_the_header(std::vector<CsvRecord> records,
                                                const std::string& path) {
@@ -37,7 +44,7 @@ std::vector<CsvRecord> records_like_the_header(std::vector<CsvRecord> records,
 
 std::vector<CsvRecord> parse_csv_table(std::string_view text, const std::string& path,
                                        const std::vector<std::string>& header) {
-    std::vector<CsvRecord> records = parse_csv(text, path);
+    std::vector<CsvRecord> records = parse_csv(without_byte_order_mark(text), path);
     if (records.empty() || records.front().fields != header) {
         refuse_header(path, header, "expected the header line ");
     }
@@ -46,7 +53,7 @@ std::vector<CsvRecord> parse_csv_table(std::string_view text, const std::string&
 
 std::vector<CsvRecord> parse_csv_columns(std::string_view text, const std::string& path,
                                          const std::vector<std::string>& header) {
-    std::vector<CsvRecord> records = parse_csv(text, path);
+    std::vector<CsvRecord> records = parse_csv(without_byte_order_mark(text), path);
     const auto begins = [&](const std::vector<std::string>& columns) {
         return columns.size() >= header.size() &&
                std::equal(header.begin(), header.end(), columns.begin());

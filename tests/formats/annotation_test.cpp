@@ -47,6 +47,12 @@ TEST_CASE("labels are read from every table that begins like one, where there ar
                       Contains("'x'"));
 }
 
+TEST_CASE("the mark that spreadsheets put before a table is passed over") {
+    const std::string mark = "\xEF\xBB\xBF";
+    CHECK(parse_labels_csv(mark + "clip,first,end,label\na,1,2,b\n", "l.csv").size() == 1);
+    CHECK(parse_cycles_csv(mark + "clip,first,end,label\na,1,2,b\n", "c.csv").size() == 1);
+}
+
 TEST_CASE("annotations of another shape are refused, naming the line") {
     using Catch::Matchers::Contains;
     CHECK_THROWS_WITH(parse_truth_csv("", "t.csv"), Contains("t.csv:1: "));
@@ -55,4 +61,10 @@ TEST_CASE("annotations of another shape are refused, naming the line") {
     CHECK_THROWS_WITH(parse_cycles_csv(header + "a,1,2\n", "c.csv"), Contains("c.csv:2: "));
     CHECK_THROWS_WITH(parse_cycles_csv(header + "a,1,x,b\n", "c.csv"), Contains("'x'"));
     CHECK_THROWS_WITH(parse_cycles_csv(header + "a,-1,2,b\n", "c.csv"), Contains("'-1'"));
+    CHECK_THROWS_WITH(parse_cycles_csv(header + "a,3,3,b\n", "c.csv"),
+                      Contains("c.csv:2: expected an end after frame 3, found 3"));
+    const std::string truth = "clip,first,end,label,end_lo,end_hi\n";
+    CHECK_THROWS_WITH(parse_truth_csv(truth + "a,9,3,b,1,2\n", "t.csv"), Contains("t.csv:2: "));
+    CHECK_THROWS_WITH(parse_truth_csv(truth + "a,1,3,,1,2\n", "t.csv"),
+                      Contains("expected a label"));
 }
