@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
@@ -31,10 +32,10 @@ void add_options(CLI::App& app, EstimateFlags& flags) {
                    "CSV file for the error of each frame and where the leaf changes");
     app.add_option("--blend-band", flags.blend_band,
                    "half gaps from a plane in which the maps of both sides are blended; 0: none")
-        ->check(CLI::NonNegativeNumber)
+        ->check(zero_or_above())
         ->capture_default_str();
     app.add_option("--amc-rate", flags.take.rate, "frames a second of an AMC take")
-        ->check(CLI::PositiveNumber)
+        ->check(above_zero())
         ->capture_default_str();
     app.add_option("--joint-map", flags.take.joint_map,
                    "TOML file: which joint has which role, for rigs with unknown names");

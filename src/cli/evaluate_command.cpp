@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/formats/annotation.h"
@@ -60,11 +61,11 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
         ->capture_default_str();
     flags.hierarchy = std::make_shared<ReindexFlags>(app, std::set<std::string>{"pose_hierarchy"});
     app.add_option("--rate", flags.rate, "frames a second of tables, where no STORE tells")
-        ->check(CLI::PositiveNumber)
+        ->check(above_zero())
         ->capture_default_str();
     app.add_option("--tolerance", flags.evaluation.boundary_tolerance,
                    "seconds by which a boundary may miss the zone where it is annotated")
-        ->check(CLI::NonNegativeNumber)
+        ->check(zero_or_above())
         ->capture_default_str();
     app.add_option("--svg", flags.pictures, "folder for a timeline of each annotated take");
     app.add_option("--format", flags.format, "text, csv or json")->capture_default_str();

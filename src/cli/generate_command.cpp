@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/progress.h"
 #include "kinetome/synthesis/corpus_generator.h"
@@ -14,7 +15,7 @@ Command generate_command() {
             auto folder = std::make_shared<std::filesystem::path>();
             app.add_option("--frames", options->frames, "frames of all takes together, at 120 Hz")
                 ->required()
-                ->check(CLI::PositiveNumber);
+                ->check(above_zero());
             app.add_option("--seed", options->seed, "same seed, same bytes")->capture_default_str();
             app.add_option("-o,--output", *folder, "folder to make")->required();
             app.add_option("--subjects", options->subjects,

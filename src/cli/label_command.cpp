@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
@@ -76,7 +77,7 @@ Command label_command() {
                     ->delimiter(',');
                 app.add_option("--threshold", flags->transfer.threshold,
                                "mean distance along a path to a label, cm, at most")
-                    ->check(CLI::PositiveNumber)
+                    ->check(above_zero())
                     ->capture_default_str();
                 app.add_option("--lead", flags->transfer.lead,
                                "a label is given if it costs less than this share of any other")

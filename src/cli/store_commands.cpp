@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/stages/comparison.h"
@@ -129,7 +130,7 @@ Command gc_command() {
                 auto keep = std::make_shared<int>(3);
                 app.add_option("STORE", *store, "store to tidy")->required();
                 app.add_option("--keep", *keep, "newest generations to keep")
-                    ->check(CLI::PositiveNumber)
+                    ->check(above_zero())
                     ->capture_default_str();
                 return [=](const Invocation& invocation) {
                     invocation.require_joined();

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "checks.h"
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
@@ -17,11 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double longest_walk = 3600;  // seconds: the motion is held in memory
+
 struct WalkFlags {
     fs::path store, output, labels;
     std::string graph = "primitives", registration = "warp", generation = "current";
     WalkOptions walk;
-    std::optional<double> fade;
+    std::optional<double> seconds, fade;
     std::string blend;
     std::vector<double> weights;
 };
@@ -118,8 +121,15 @@ void check(const WalkFlags& flags) {
         throw UsageError(
             fmt::format("--registration {}: expected warp or even", flags.registration));
     }
+    if (flags.seconds && !(*flags.seconds > 0 && *flags.seconds <= longest_walk)) {
+        throw UsageError(fmt::format("--seconds {:g}: expected more than 0 and at most {}",
+                                     *flags.seconds, longest_walk));
+    }
     if (flags.blend.empty() && !flags.weights.empty()) {
         throw UsageError("--weights are those of --blend");
+    }
+    if (!flags.blend.empty() && flags.seconds) {
+        throw UsageError("--blend lasts as long as its motions do: it takes no --seconds");
     }
     if (!flags.blend.empty() && !(flags.walk.from.empty() && flags.walk.to.empty())) {
         throw UsageError("--blend stays in one node: it goes neither --from nor --to others");
@@ -142,6 +152,7 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
     WalkOptions options = flags.walk;
     if (bundles) options = options_of_bundle_walk(options);
     options.registered = flags.registration == "warp";
+    if (flags.seconds) options.seconds = *flags.seconds;
     if (flags.fade) options.fade_seconds = *flags.fade;
     const auto pieces =
         bundles ? stored_bundle_members(open, flags.labels) : stored_primitives(open, flags.labels);
@@ -162,7 +173,7 @@ ExitCode walk(const WalkFlags& flags, const Invocation& invocation) {
         bundles ? stored_bundle_links(open.generation) : std::vector<ClusterLink>{});
     write_motion(made.motion, format, flags.output);
     print_walk(made);
-    warn_of_early_end(made, flags.walk, invocation.log);
+    warn_of_early_end(made, options, invocation.log);
     return ExitCode::success;
 }
 
@@ -183,8 +194,11 @@ Command walk_command() {
             app.add_option("--graph", flags->graph,
                            "what the walk leads through: primitives or bundles")
                 ->capture_default_str();
-            app.add_option("--seconds", options.seconds, "wanted length")->capture_default_str();
+            app.add_option("--seconds", flags->seconds,
+                           fmt::format("wanted length, at most {} (default: {:g})", longest_walk,
+                                       options.seconds));
             app.add_option("--seed", options.seed, "the same seed walks the same way")
+                ->check(zero_or_above())
                 ->capture_default_str();
             app.add_option("--from", options.from, "label, cluster or bundle to begin with");
             app.add_option("--to", options.to, "label, cluster or bundle to end with");
