@@ -44,6 +44,13 @@ WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun>
                          const Clip& walk, const ContactOptions& options) {
     const auto takes = measured_clips(clips, runs, options);
     WalkQuality quality;
+    for (const auto& [clip, take] : takes) {
+        quality.pose_step_in_takes =
+            std::max(quality.pose_step_in_takes,
+                     largest_step(take.pose_steps, whole(clips[static_cast<size_t>(clip)])));
+        quality.peaks_in_takes =
+            larger(quality.peaks_in_takes, joint_peaks(take.positions, walk.rate));
+    }
     for (const MotionRun& run : runs) {
         const Measured& take = takes.at(run.clip);
         const int64_t first = take.inside(static_cast<int64_t>(std::ceil(run.first)));
@@ -54,10 +61,6 @@ WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun>
         const auto contacts = std::span(take.contacts)
                                   .subspan(static_cast<size_t>(first), static_cast<size_t>(count));
         quality.slide_in_takes += foot_slide(*walk.skeleton, rows, contacts, walk.rate);
-        quality.pose_step_in_takes =
-            std::max(quality.pose_step_in_takes,
-                     largest_step(take.pose_steps, whole(clips[static_cast<size_t>(run.clip)])));
-        quality.peaks_in_takes = larger(quality.peaks_in_takes, joint_peaks(rows, walk.rate));
     }
     std::vector<FootContacts> contacts;
     for (const FrameSource& source : sources_of_runs(runs)) {

@@ -26,6 +26,11 @@ MatrixF poses_of(const Clip& clip, const MotionPiece& piece, int64_t stride) {
     return normalised_markers(*clip.skeleton, part.motion, joint_positions(part));
 }
 
+/// Negative below.
+double share_above(double value, double bound) {
+    return bound > 0 ? value / bound - 1 : value;
+}
+
 MotionRun run_of(const MotionPiece& piece) {
     return {.clip = piece.clip,
             .first = static_cast<double>(piece.first),
@@ -52,7 +57,7 @@ WalkClips::WalkClips(const StoredGraph& graph, const ClipSource& source, const W
       body_(body),
       clips_(graph.clips.size()),
       supports_(graph.clips.size()),
-      largest_steps_(graph.clips.size()) {
+      peaks_(graph.clips.size()) {
     const std::string body_class = source.kind(body).clip_class;
     const std::string clip_class = source.kind(graph.clips.front()).clip_class;
     if (body_class != clip_class) {
@@ -71,13 +76,19 @@ const Clip& WalkClips::clip(int32_t number) {
     clip = retarget(resample(source_.read(graph_.clips[at]), graph_.rate), skeleton_);
     const auto contacts = foot_contacts(*clip.skeleton, joint_positions(clip), clip.rate);
     supports_[at] = foot_support(contacts, clip.rate);
-    const std::vector<double> steps = pose_steps(clip);
-    for (const MotionPiece& piece : graph_.nodes.graph.pieces()) {
-        if (piece.clip == number) {
-            largest_steps_[at] = std::max(largest_steps_[at], largest_step(steps, run_of(piece)));
-        }
-    }
+    peaks_[at] = peaks_of_pieces(number);
     return clip;
+}
+
+WalkClips::Peaks WalkClips::peaks_of_pieces(int32_t number) const {
+    const Clip& clip = clips_[static_cast<size_t>(number)];
+    const std::vector<double> steps = pose_steps(clip);
+    Peaks peaks{.joints = joint_peaks(joint_positions(clip), clip.rate)};
+    for (const MotionPiece& piece : graph_.nodes.graph.pieces()) {
+        if (piece.clip == number)
+            peaks.pose_step = std::max(peaks.pose_step, largest_step(steps, run_of(piece)));
+    }
+    return peaks;
 }
 
 const Crossing& WalkClips::crossing(int32_t entry, int32_t exit) {
@@ -130,22 +141,28 @@ double WalkClips::excess(int32_t entry, int32_t exit) {
     if (!is_new) return found->second;
     const auto node = graph_.nodes.graph.node_of(entry);
     std::vector<MotionRun> there = runs({.steps = {{node, entry, exit}}});
-    double allowed = 0;
+    Peaks allowed;
     for (const MotionRun& run : there) {
-        allowed = std::max(allowed, largest_steps_[static_cast<size_t>(run.clip)]);
+        const Peaks& own = peaks_[static_cast<size_t>(run.clip)];
+        allowed.pose_step = std::max(allowed.pose_step, own.pose_step);
+        allowed.joints = larger(allowed.joints, own.joints);
     }
     // What is a frame long leaps from the frames before to those after. Fades last whole or half
     // frames: a walk comes there on a frame or between two.
     const double first = there.front().first;
     there.back().end += 2;
-    double largest = 0;
+    Peaks largest;
     for (const double before : {2., 2.5}) {
         there.front().first = first - before;
         const Clip played = play_runs(clips_, there, supports_);
         const MotionRun whole{.first = 0, .end = static_cast<double>(played.frames())};
-        largest = std::max(largest, largest_step(pose_steps(played), whole));
+        largest.pose_step = std::max(largest.pose_step, largest_step(pose_steps(played), whole));
+        largest.joints = larger(largest.joints, joint_peaks(joint_positions(played), played.rate));
     }
-    return found->second = largest - allowed;
+    return found->second =
+               std::max({share_above(largest.pose_step, allowed.pose_step),
+                         share_above(largest.joints.speed, allowed.joints.speed),
+                         share_above(largest.joints.acceleration, allowed.joints.acceleration)});
 }
 
 }  // namespace kinetome

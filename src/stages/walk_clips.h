@@ -8,6 +8,7 @@
 
 #include "kinetome/models/graph_walk.h"
 #include "kinetome/models/motion_blend.h"
+#include "kinetome/models/motion_quality.h"
 #include "kinetome/stages/primitive_walk.h"
 
 namespace kinetome {
@@ -28,11 +29,17 @@ class WalkClips {
     std::vector<MotionRun> runs(const GraphWalk& walk);
     /// A piece as a part of a blend, registered to another one unless the options are against it.
     BlendPart part(int32_t piece, int32_t registered_to, double weight);
-    /// How much faster the pose changes at most, going over from the one to the other, than in any
-    /// piece of their clips, cm/s.
+    /// By what share of it going over from the one to the other exceeds what their clips do: how
+    /// fast a pose changes in the pieces of both, how fast a joint moves, how hard it is thrown.
     double excess(int32_t entry, int32_t exit);
 
   private:
+    /// The largest of a motion.
+    struct Peaks {
+        double pose_step = 0;
+        JointPeaks joints;
+    };
+    Peaks peaks_of_pieces(int32_t clip) const;
     const Clip& clip(int32_t number);
     const Crossing& crossing(int32_t entry, int32_t exit);
     /// Where fades of these lengths pass best from the one piece to the other.
@@ -46,7 +53,7 @@ class WalkClips {
     std::shared_ptr<const Skeleton> skeleton_;
     std::vector<Clip> clips_;
     ClipSupports supports_;
-    std::vector<double> largest_steps_;  ///< pose steps, of the pieces of each clip
+    std::vector<Peaks> peaks_;  ///< of each clip: pose steps in its pieces, joints in all of it
     std::map<std::pair<int32_t, int32_t>, Crossing> crossings_;
     std::map<std::pair<int32_t, int32_t>, double> excesses_;
 };

@@ -187,9 +187,12 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
     CHECK(contains(told, "bundles.h5"));
 
     // A blend of one motion is that motion; of several it has their mean length.
-    const auto blend = [&](const std::string& weights) {
-        return walk({"--blend", largest, "--weights", weights});
+    const auto blend_of = [&](const std::string& name, const std::string& weights) {
+        return std::vector<std::string>{
+            "walk", store.path,  "--graph", "bundles", "--blend",
+            name,   "--weights", weights,   "-o",      store.output("b.bvh")};
     };
+    const auto blend = [&](const std::string& weights) { return blend_of(largest, weights); };
     std::vector<int64_t> lengths;
     for (const std::string& row : rows) {
         if (!row.starts_with(largest + ",")) continue;
@@ -200,6 +203,7 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
         lengths.push_back(end_frame - first_frame);
     }
     REQUIRE(lengths.size() > 1);
+    CHECK(contains(require_program(walk({"--blend", largest}), usage).errors, "--seconds"));
     CHECK(contains(require_program(blend("1")).output,
                    "motion        " + std::to_string(lengths[0]) + " frames"));
     const auto mean = std::llround(double(lengths[0] + 2 * lengths[1]) / 3);
@@ -207,7 +211,7 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
                    "motion        " + std::to_string(mean) + " frames"));
     CHECK(contains(require_program(blend("0,0"), usage).errors, "one of them must be above 0"));
     CHECK(contains(require_program(blend("1,-1"), usage).errors, "is no weight"));
-    CHECK(contains(require_program(walk({"--blend", "swimming"}), usage).errors,
+    CHECK(contains(require_program(blend_of("swimming", "1"), usage).errors,
                    "no bundle has this label or number"));
 
     const auto score =
@@ -264,6 +268,10 @@ void check_quality(const std::string& store, const std::string& graph, const std
         CAPTURE(graph, seed, told);
         const auto [step, step_in_takes] = measured(told, "pose step");
         CHECK(step <= step_in_takes);
+        const auto [speed, speed_in_takes] = measured(told, "fastest joint");
+        CHECK(speed <= speed_in_takes);
+        const auto [jolt, jolt_in_takes] = measured(told, "hardest jolt");
+        CHECK(jolt <= jolt_in_takes);
         const auto [slide, slide_in_takes] = measured(told, "foot slide");
         CHECK(slide <= 1.5 * slide_in_takes);
     }
@@ -271,7 +279,7 @@ void check_quality(const std::string& store, const std::string& graph, const std
 
 }  // namespace
 
-TEST_CASE("in walks no pose changes faster than in the takes, and feet slide hardly more",
+TEST_CASE("in walks poses and joints are no faster than in the takes, and feet slide hardly more",
           "[walk]") {
     const LabelledStore store;
     check_quality(store.path, "bundles", store.output("w.bvh"));

@@ -40,12 +40,12 @@ std::vector<double> pose_steps(const Clip& clip);
 /// The largest of those inside a run's frames of its clip; 0 where there is none.
 double largest_step(std::span<const double> pose_steps, const MotionRun& run);
 
-/// A motion joined from runs of clips, beside those runs where they come from.
+/// A motion joined from runs of clips, beside the clips where they come from.
 struct WalkQuality {
-    FootSlide slide, slide_in_takes;
-    JointPeaks peaks, peaks_in_takes;
-    double pose_step = 0;           ///< the largest, cm/s
-    double pose_step_in_takes = 0;  ///< that of the whole clips
+    FootSlide slide, slide_in_takes;   ///< in the runs
+    JointPeaks peaks, peaks_in_takes;  ///< in the whole clips
+    double pose_step = 0;              ///< the largest, cm/s
+    double pose_step_in_takes = 0;     ///< in the whole clips
 };
 /// `walk` is what play_runs makes of the runs. Its feet are taken to stand where they do in the
 /// clip that is seen most: a foot that is dragged by a blend counts. Throws what foot_contacts
