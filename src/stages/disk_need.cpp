@@ -146,6 +146,7 @@ uint64_t bundle_files_bytes(const std::string& stage, const CorpusShape& corpus,
                             const std::vector<PartitionShape>& partitions) {
     constexpr double members_per_letter = 0.31, bundles_per_letter = 0.16;
     constexpr double nodes_per_letter = 0.07, edges_per_letter = 0.15, links_per_letter = 0.15;
+    const bool are_linked = partitions.size() > 1;
     int64_t letters = 0;
     for (const PartitionShape& partition : partitions) letters += expected_letters(partition.rows);
     const auto share = [=](double per_letter) {
@@ -162,7 +163,7 @@ uint64_t bundle_files_bytes(const std::string& stage, const CorpusShape& corpus,
         group.rows(share(bundles_per_letter), {index});
         group.rows(share(nodes_per_letter), {index, number, index});
         group.rows(share(edges_per_letter), {index, index, number, number});
-        group.rows(share(links_per_letter), {index, index, number});
+        group.rows(are_linked ? share(links_per_letter) : 0, {index, index, number});
         group.rows(1, {number, number, number});
     }
     return group.bytes();
