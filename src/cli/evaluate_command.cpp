@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -85,6 +86,23 @@ bool is_one_of(const std::string& word, const std::set<std::string>& words) {
     return words.count(word) > 0;
 }
 
+/// What is given shall not be passed over.
+void check_use(const EvaluateFlags& flags) {
+    const auto of = [&](const char* option, bool given, const std::set<std::string>& whats) {
+        require(!given || is_one_of(flags.what, whats),
+                fmt::format("{} is of --what {}", option, fmt::join(whats, " or ")));
+    };
+    of("--clips", !flags.clips.empty(), {"compression", "estimation"});
+    of("--held-out", flags.held_out != "all", {"estimation"});
+    of("an option of the pose hierarchy", !flags.hierarchy->given().empty(),
+       {"compression", "estimation"});
+    of("--segments", !flags.segments.empty(), {"segments"});
+    of("--primitives", !flags.primitives.empty(), {"primitives"});
+    of("--cycles", !flags.cycles.empty(), {"primitives"});
+    of("--svg", !flags.pictures.empty(), {"segments"});
+    of("--peer", !flags.peer.empty(), {"segments"});
+}
+
 void check(const EvaluateFlags& flags) {
     require(is_one_of(flags.what, {"segments", "primitives", "bundles", "variance", "recurrence",
                                    "estimation", "compression"}),
@@ -104,6 +122,7 @@ void check(const EvaluateFlags& flags) {
                 : fmt::format("--what {}: give a STORE", flags.what));
     require(flags.peer.empty() || !flags.store.empty(),
             "--peer ppca needs the motion of the takes: give a STORE");
+    check_use(flags);
 }
 
 /// What the flags name, read when it is asked for.
@@ -247,7 +266,9 @@ std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
 }  // namespace
 
 Command evaluate_command() {
-    return {"evaluate", "compare segments or primitives with annotations",
+    return {"evaluate",
+            "how good segments, primitives, bundles or the pose hierarchy are, by annotations or "
+            "held-out takes",
             "kinetome evaluate motion.store --truth truth.csv --svg pictures",
             [](CLI::App& app) -> Run {
                 auto flags = std::make_shared<EvaluateFlags>();

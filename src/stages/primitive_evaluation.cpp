@@ -94,9 +94,14 @@ Table evaluation_table(const PrimitiveEvaluation& evaluation) {
     Table table{{"what", "name", "primitives", "cycles", "activities", "counted_exactly",
                  "counted_within_one", "cluster_purity"},
                 {}};
+    const auto share = [](double of, int64_t whole) {  // of nothing there is none
+        return whole > 0 ? Table::Cell(of) : Table::Cell(std::string());
+    };
     const auto row = [&](const char* what, const std::string& name, const PrimitiveScore& score) {
         table.rows.push_back({what, name, score.primitives, score.cycles, score.activities,
-                              score.exact_share(), score.within_one_share(), score.purity()});
+                              share(score.exact_share(), score.activities),
+                              share(score.within_one_share(), score.activities),
+                              share(score.purity(), score.classified)});
     };
     for (const auto& [clip, score] : evaluation.takes) row("take", clip, score);
     row("total", "", evaluation.total);

@@ -64,6 +64,10 @@ TEST_CASE("what cannot be evaluated is refused, naming file and line", "[evaluat
         CHECK(contains(result.errors, message));
         CHECK(result.output.empty());
     };
+    refused({"--segments", tables.segments, "--truth", tables.truth, "--clips", "a"}, 64,
+            "--clips is of --what compression or estimation");
+    refused({"--segments", tables.segments, "--truth", tables.truth, "--leaf-tolerance", "9"}, 64,
+            "an option of the pose hierarchy is of --what");
     const std::string unknown =
         tables.folder.write("unknown.csv", "clip,first,end,label,end_lo,end_hi\nz,0,9,x,9,9\n");
     refused({"--segments", tables.segments, "--truth", unknown}, 65, "unknown.csv:2: clip 'z'");
