@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <deque>
 #include <system_error>
 #include <vector>
 
@@ -96,6 +97,8 @@ class TemporaryFile {
         renamed_ = true;
     }
 
+    const fs::path& target() const { return target_; }
+
   private:
     /// Not mkstemp: its files are private, and these shall have the permissions of any new file.
     Descriptor open_beside(const fs::path& path) {
@@ -150,15 +153,28 @@ void read_blocks(const fs::path& path, const std::function<void(std::string_view
 }
 
 void write_file_atomically(const fs::path& path, std::string_view text) {
-    std::error_code none;
-    const fs::path target = fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
-    const fs::file_status there = fs::status(target, none);
-    if (fs::is_directory(there)) throw create_error("replace", target, EISDIR);
-    if (fs::exists(there) && !fs::is_regular_file(there)) return write_into(target, text);
-    TemporaryFile file(target);
-    file.write(text);
-    file.sync_and_rename();
-    fsync_directory(folder_of(target));
+    const FileText one[] = {{path, text}};
+    write_files_atomically(one);
+}
+
+void write_files_atomically(std::span<const FileText> files) {
+    std::deque<TemporaryFile> written;
+    std::vector<FileText> streams;
+    for (const auto& [path, text] : files) {
+        std::error_code none;
+        const fs::path target =
+            fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
+        const fs::file_status there = fs::status(target, none);
+        if (fs::is_directory(there)) throw create_error("replace", target, EISDIR);
+        if (fs::exists(there) && !fs::is_regular_file(there)) {
+            streams.push_back({target, text});
+        } else {
+            written.emplace_back(target).write(text);
+        }
+    }
+    for (const auto& [path, text] : streams) write_into(path, text);
+    for (TemporaryFile& file : written) file.sync_and_rename();
+    for (const TemporaryFile& file : written) fsync_directory(folder_of(file.target()));
 }
 
 void copy_to_new_file(const fs::path& source, const fs::path& target) {

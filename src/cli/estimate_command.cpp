@@ -57,6 +57,21 @@ void print_estimate(const TakeEstimate& estimate, const ClassHierarchy& model) {
     fmt::print("rms_mm {:.2f}\n", estimate.rms);
 }
 
+/// Of those that were asked for all or none.
+void write_results(const EstimateFlags& flags, const TakeEstimate& estimate) {
+    std::string motion, meter;
+    std::vector<FileText> files;
+    if (!flags.output.empty()) {
+        motion = write_bvh(estimated_motion(estimate));
+        files.push_back({flags.output, motion});
+    }
+    if (!flags.meter.empty()) {
+        meter = write_table(meter_table(estimate), TableFormat::csv);
+        files.push_back({flags.meter, meter});
+    }
+    write_files_atomically(files);
+}
+
 }  // namespace
 
 Command estimate_command() {
@@ -74,13 +89,7 @@ Command estimate_command() {
                     const Clip take = read_take_file(flags->file, flags->take);
                     const ClassHierarchy model = model_for(open.generation, take);
                     const TakeEstimate estimate = estimate_take(model, take, flags->blend_band);
-                    if (!flags->output.empty()) {
-                        write_file_atomically(flags->output, write_bvh(estimated_motion(estimate)));
-                    }
-                    if (!flags->meter.empty()) {
-                        write_file_atomically(flags->meter,
-                                              write_table(meter_table(estimate), TableFormat::csv));
-                    }
+                    write_results(*flags, estimate);
                     print_estimate(estimate, model);
                     return ExitCode::success;
                 };

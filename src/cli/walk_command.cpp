@@ -57,8 +57,9 @@ void write_amc_and_asf(const Clip& motion, const fs::path& output) {
         throw CreateError(fmt::format("{} is the skeleton of something else; give -o another name",
                                       path_for_message(path.string())));
     }
-    write_file_atomically(path, skeleton);
-    write_file_atomically(output, write_amc(motion));
+    const std::string frames = write_amc(motion);
+    const FileText files[] = {{path, skeleton}, {output, frames}};
+    write_files_atomically(files);
 }
 
 /// The nodes passed, each with how often in a row.

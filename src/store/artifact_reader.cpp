@@ -125,7 +125,9 @@ bool ArtifactReader::contains(std::string_view dataset) const {
 
 const DatasetSpec& ArtifactReader::spec(std::string_view dataset) const {
     if (const DatasetSpec* found = state_->find(dataset)) return *found;
-    throw StoreError(fmt::format("{} has no dataset {}", state_->path.string(), dataset));
+    throw StoreError(fmt::format(
+        "{} has no dataset {}: was it made by another version? `kinetome reindex` makes it again",
+        state_->path.string(), dataset));
 }
 
 int64_t ArtifactReader::rows(std::string_view dataset) const {

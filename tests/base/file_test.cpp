@@ -92,6 +92,13 @@ TEST_CASE("a rename that fails leaves no temporary file") {
     CHECK(names_in(folder.path()) == std::vector<std::string>{"taken"});
 }
 
+TEST_CASE("of several files none appears where one cannot be written") {
+    const TemporaryFolder folder;
+    const FileText files[] = {{folder / "motion", "m"}, {folder / "no" / "meter", "e"}};
+    CHECK_THROWS_AS(write_files_atomically(files), CreateError);
+    CHECK(names_in(folder.path()).empty());
+}
+
 TEST_CASE("a pipe or a link that is written to stays what it is") {
     const TemporaryFolder folder;
     const std::filesystem::path pipe = folder / "pipe", link = folder / "link";

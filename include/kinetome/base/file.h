@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,14 @@ void read_blocks(const std::filesystem::path& path,
 /// folder. Throws CreateError; then the temporary is gone and what was at `path` is still there.
 /// Links are followed; into a pipe or a device the text is written as it is.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
+
+struct FileText {
+    std::filesystem::path path;
+    std::string_view text;
+};
+
+/// The same of several: all are written before the first appears.
+void write_files_atomically(std::span<const FileText> files);
 
 /// Copies a file of the store to a name where nothing is yet. Not synced. Throws StoreError for the
 /// source, CreateError for the target; then nothing is left there.
