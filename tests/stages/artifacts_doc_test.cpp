@@ -245,7 +245,7 @@ TEST_CASE("exported tables have the documented columns") {
     const SmallStore small;
     const OpenStore open(small.store());
     const auto& tables = document.at("## Exported tables");
-    REQUIRE(tables.table.size() == 8);
+    REQUIRE(tables.table.size() == 9);
     for (const Cells& cells : tables.table) {
         const std::string what = *quoted_words(cells[0]).begin();
         if (what == "primitive-graph") {
