@@ -11,11 +11,9 @@
 //       whole: the same of one string; takes of CORPUS again and again, at other paces
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <numeric>
 #include <string>
@@ -26,6 +24,7 @@
 #include "generated_corpus.h"
 #include "kinetome/base/resources.h"
 #include "kinetome/synthesis/clip_variation.h"
+#include "program.h"
 
 namespace {
 
@@ -33,7 +32,7 @@ using namespace kinetome;
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string experiment;
+    std::string experiment = "generated";
     int64_t frames = 0;  ///< 0: as the experiment has it
     std::vector<uint64_t> seeds = {1, 2, 3};
     int starts = 6;
@@ -351,31 +350,25 @@ void whole(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        CLI::App app("experiments with motion bundles");
-        Options options;
-        app.add_option("--experiment", options.experiment)->required();
-        app.add_option("--frames", options.frames);
-        app.add_option("--seeds", options.seeds, "of generated corpora");
-        app.add_option("--starts", options.starts, "of EM");
-        app.add_option("--threads", options.threads);
-        app.add_option("corpus", options.corpus);
-        CLI11_PARSE(app, argc, argv);
-        const std::map<std::string, void (*)(const Options&)> experiments = {
-            {"generated", generated},
-            {"kappa", kappa},
-            {"noise", noise},
-            {"scale", scale},
-            {"whole", whole}};
-        const auto chosen = experiments.find(options.experiment);
-        if (chosen == experiments.end()) {
-            throw UsageError("--experiment " + options.experiment +
-                             ": expected generated, kappa, noise, scale or whole");
-        }
-        chosen->second(options);
-        return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bundle_experiments_bench: {}\n", error.what());
-        return 1;
-    }
+    const std::map<std::string, void (*)(const Options&)> experiments = {{"generated", generated},
+                                                                         {"kappa", kappa},
+                                                                         {"noise", noise},
+                                                                         {"scale", scale},
+                                                                         {"whole", whole}};
+    std::vector<std::string> names;
+    for (const auto& [name, experiment] : experiments) names.push_back(name);
+    Options options;
+    bench::Program program(
+        "What S1 3.6 and 5 say of motion bundles, on motion whose truth is known");
+    program.choice("--experiment", options.experiment, names);
+    program.option("--frames", options.frames, "0: as the experiment has it");
+    program.option("--seeds", options.seeds, "of generated corpora");
+    program.count("--starts", options.starts, "of EM");
+    program.count("--threads", options.threads);
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc",
+                     bench::Program::Need::optional);
+    return program.run(argc, argv, [&] {
+        experiments.at(options.experiment)(options);
+        return true;
+    });
 }

@@ -5,10 +5,8 @@
 //       counts when another subject has a bundle of that label.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <set>
 #include <string>
@@ -19,6 +17,7 @@
 #include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/models/bundle_links.h"
 #include "kinetome/models/motion_bundle.h"
+#include "program.h"
 #include "spelled_takes.h"
 
 namespace {
@@ -138,20 +137,17 @@ void judge(const Options& options, uint64_t seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        CLI::App app("links between bundles of different bodies");
-        Options options;
-        app.add_option("--frames", options.frames, "of each corpus");
-        app.add_option("--subjects", options.subjects);
-        app.add_option("--seeds", options.seeds, "of the corpora");
-        app.add_option("--reach", options.links.reach);
-        app.add_option("--threads", options.threads);
-        CLI11_PARSE(app, argc, argv);
+    Options options;
+    bench::Program program(
+        "Which bundles of different bodies are linked, and which should not be?");
+    program.count("--frames", options.frames, "of each corpus");
+    program.count("--subjects", options.subjects, "of each corpus");
+    program.option("--seeds", options.seeds, "of the corpora");
+    program.option("--reach", options.links.reach, "times the usual cost");
+    program.count("--threads", options.threads);
+    return program.run(argc, argv, [&] {
         fmt::print("seed bundles counted usual cost  links  linked different   cpu s\n");
         for (const uint64_t seed : options.seeds) judge(options, seed);
-        return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bundle_links_bench: {}\n", error.what());
-        return 1;
-    }
+        return true;
+    });
 }

@@ -6,11 +6,9 @@
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +19,7 @@
 #include "kinetome/models/bundle_graph.h"
 #include "kinetome/models/bundle_score.h"
 #include "kinetome/models/motion_bundle.h"
+#include "program.h"
 #include "spelled_takes.h"
 
 namespace {
@@ -326,31 +325,25 @@ void judge_corpus(const Options& options, bool by_subject) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        CLI::App app("purity, coverage and speed of motion bundles");
-        Options options;
-        std::string set = "takes";
-        app.add_option("--set", set);
-        app.add_option("corpus", options.corpus)->required();
-        app.add_option("truth", options.truth)->required();
-        app.add_option("--starts", options.starts);
-        app.add_option("--threads", options.threads);
-        app.add_option("--spread", options.spread);
-        app.add_option("--tau-quantile", options.setting.tau_quantile);
-        app.add_option("--step-quantile", options.setting.bundles.step_quantile);
-        app.add_flag("--curve", options.curve);
-        CLI11_PARSE(app, argc, argv);
+    Options options;
+    std::string set = "takes";
+    bench::Program program(
+        "How pure, wide and tall are motion bundles, and how fast are they found?");
+    program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
+    program.argument("truth", options.truth, "CSV of its annotated activities");
+    program.choice("--set", set, {"takes", "subjects", "corpus", "known"}, "of takes");
+    program.count("--starts", options.starts, "of EM");
+    program.count("--threads", options.threads);
+    program.option("--spread", options.spread, "as that of kinetome reindex");
+    program.option("--tau-quantile", options.setting.tau_quantile);
+    program.option("--step-quantile", options.setting.bundles.step_quantile);
+    program.flag("--curve", options.curve, "by spread, quantiles, τ and γ");
+    return program.run(argc, argv, [&] {
         if (!options.spread.empty()) parse_spread(options.spread, options.setting.bundles);
-        constexpr std::array sets = {"takes", "subjects", "corpus", "known"};
-        if (std::find(sets.begin(), sets.end(), set) == sets.end())
-            throw UsageError("--set " + set + ": expected takes, subjects, corpus or known");
         if (set == "takes") judge_labelled_takes(options);
         if (set == "subjects") judge_corpus(options, true);
         if (set == "known") describe_known_takes(options);
         if (set == "corpus") judge_corpus(options, false);
-        return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bundles_bench: {}\n", error.what());
-        return 1;
-    }
+        return true;
+    });
 }
