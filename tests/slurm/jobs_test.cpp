@@ -12,8 +12,8 @@ const std::vector<std::string> few_clusters = {"--", "--clusters", "60", "--shar
 /// EM takes some seconds, so that it can be found at work.
 std::vector<std::string> slow_clustering(std::vector<std::string> submit_options = {}) {
     const std::vector<std::string> reindex_options = {
-        "--", "--clusters",       "400", "--shard-frames", "8192", "--min-gain",
-        "0",  "--max-iterations", "100"};
+        "--", "--clusters",       "1000", "--shard-frames", "8192", "--min-gain",
+        "0",  "--max-iterations", "150"};
     submit_options.insert(submit_options.end(), reindex_options.begin(), reindex_options.end());
     return submit_options;
 }
