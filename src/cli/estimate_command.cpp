@@ -6,6 +6,7 @@
 #include "command.h"
 #include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
+#include "kinetome/formats/resample.h"
 #include "kinetome/formats/write_bvh.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/take_estimate.h"
@@ -57,12 +58,12 @@ void print_estimate(const TakeEstimate& estimate, const ClassHierarchy& model) {
     fmt::print("rms_mm {:.2f}\n", estimate.rms);
 }
 
-/// Of those that were asked for all or none.
-void write_results(const EstimateFlags& flags, const TakeEstimate& estimate) {
+/// Of those that were asked for all or none; the motion at the rate of the take.
+void write_results(const EstimateFlags& flags, const TakeEstimate& estimate, double rate) {
     std::string motion, meter;
     std::vector<FileText> files;
     if (!flags.output.empty()) {
-        motion = write_bvh(estimated_motion(estimate));
+        motion = write_bvh(resample(estimated_motion(estimate), rate));
         files.push_back({flags.output, motion});
     }
     if (!flags.meter.empty()) {
@@ -89,7 +90,7 @@ Command estimate_command() {
                     const Clip take = read_take_file(flags->file, flags->take);
                     const ClassHierarchy model = model_for(open.generation, take);
                     const TakeEstimate estimate = estimate_take(model, take, flags->blend_band);
-                    write_results(*flags, estimate);
+                    write_results(*flags, estimate, take.rate);
                     print_estimate(estimate, model);
                     return ExitCode::success;
                 };

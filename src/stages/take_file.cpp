@@ -1,6 +1,7 @@
 #include "kinetome/stages/take_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -39,12 +40,21 @@ fs::path skeleton_beside(const fs::path& take, std::string_view extension) {
                     stem.substr(0, stem.find('_')), stem, extension, all.size()));
 }
 
+std::vector<std::string> known_extensions() {
+    std::vector<std::string> extensions;
+    for (const TakeFormat& format : take_formats()) extensions.emplace_back(format.extension);
+    return extensions;
+}
+
 }  // namespace
 
 Clip read_take_file(const fs::path& path, const TakeFileOptions& options) {
     const std::string name = path_for_message(path.string());
     const TakeFormat* const format = find_take_format(path.extension().string());
-    if (!format) throw UsageError(fmt::format("{}: not the name of a take (.amc, …)", name));
+    if (!format) {
+        throw UsageError(fmt::format("{}: not the name of a take; what can be read: {}", name,
+                                     fmt::join(known_extensions(), ", ")));
+    }
     std::optional<JointMap> joint_map;
     if (!options.joint_map.empty()) joint_map = load_joint_map(options.joint_map.string());
     const auto with_roles = [&](Skeleton skeleton, const std::string& origin) {

@@ -6,7 +6,7 @@
 
 namespace {
 
-constexpr int usage = 64;
+constexpr int usage = 64, cannot_create = 73;
 
 /// A store of generated takes and their pose hierarchy.
 struct ModelledStore {
@@ -38,6 +38,17 @@ TEST_CASE("estimate writes motion and meter, and ends with the error", "[estimat
     const std::string frames = std::to_string(meter.size() - 1);
     CHECK(contains(lines[1], frames + " frames at 120 a second"));
     CHECK(contains(text_of(store.output("e.bvh")), "Frames: " + frames + "\n"));
+
+    // The same numbers taken for a slower take: the motion has its frames, not those in between.
+    require_program({"estimate", store.path, "--file", take, "--amc-rate", "60", "-o",
+                     store.output("slow.bvh")});
+    CHECK(contains(text_of(store.output("slow.bvh")), "Frames: " + frames + "\n"));
+
+    const CommandResult nowhere =
+        run_program({"estimate", store.path, "--file", take, "-o", store.output("left.bvh"),
+                     "--meter", store.output("no/meter.csv")});
+    CHECK(nowhere.exit_code == cannot_create);
+    CHECK_FALSE(fs::exists(store.output("left.bvh")));
 
     require_program({"estimate", store.path, "--file", take, "-o", "e.txt"}, usage);
     require_program({"estimate", store.path, "--file", store.output("e.txt")}, usage);
