@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "kinetome/base/error.h"

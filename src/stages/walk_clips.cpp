@@ -76,11 +76,11 @@ const Clip& WalkClips::clip(int32_t number) {
     clip = retarget(resample(source_.read(graph_.clips[at]), graph_.rate), skeleton_);
     const auto contacts = foot_contacts(*clip.skeleton, joint_positions(clip), clip.rate);
     supports_[at] = foot_support(contacts, clip.rate);
-    peaks_[at] = peaks_of_pieces(number);
+    peaks_[at] = measured_peaks(number);
     return clip;
 }
 
-WalkClips::Peaks WalkClips::peaks_of_pieces(int32_t number) const {
+WalkClips::Peaks WalkClips::measured_peaks(int32_t number) const {
     const Clip& clip = clips_[static_cast<size_t>(number)];
     const std::vector<double> steps = pose_steps(clip);
     Peaks peaks{.joints = joint_peaks(joint_positions(clip), clip.rate)};

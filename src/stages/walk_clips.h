@@ -39,7 +39,7 @@ class WalkClips {
         double pose_step = 0;
         JointPeaks joints;
     };
-    Peaks peaks_of_pieces(int32_t clip) const;
+    Peaks measured_peaks(int32_t clip) const;
     const Clip& clip(int32_t number);
     const Crossing& crossing(int32_t entry, int32_t exit);
     /// Where fades of these lengths pass best from the one piece to the other.

@@ -14,7 +14,7 @@ struct SymmetricEigen {
 /// when there are none to be found, as with values that are not finite.
 SymmetricEigen symmetric_eigen(const MatrixD& matrix);
 
-/// The same values alone, in a third of the time.
+/// The same values alone, which are found sooner.
 VectorD symmetric_eigenvalues(const MatrixD& matrix);
 
 /// An eigenvector's sign is arbitrary: this fixes it. Of equally large entries the first counts.
