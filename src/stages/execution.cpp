@@ -199,6 +199,7 @@ FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selecti
             make_together(plan, to_do.front(), finished, execution);
         }
     }
+    execution.ranks.wait_for_all();  // a rank with nothing to do would publish under the others
     return finished;
 }
 

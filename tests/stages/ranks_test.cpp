@@ -3,11 +3,14 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <string>
+#include <thread>
 
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/reindex.h"
 #include "kinetome/stages/verification.h"
+#include "kinetome/store/store_directory.h"
 #include "kinetome/synthesis/corpus_generator.h"
 #include "support/temporary_folder.h"
 #include "support/thread_ranks.h"
@@ -39,6 +42,37 @@ RunSummary reindex_on(int count, const ReindexRequest& request, const StopToken&
     });
     return summary;
 }
+
+/// A rank that comes late out of every broadcast.
+class LateCommunicator final : public Communicator {
+  public:
+    explicit LateCommunicator(Communicator& ranks) : ranks_(ranks) {}
+
+    int rank() const override { return ranks_.rank(); }
+    int size() const override { return ranks_.size(); }
+    std::vector<std::string> gather_to_all(std::string bytes) override {
+        return ranks_.gather_to_all(std::move(bytes));
+    }
+    std::vector<std::string> gather(std::string bytes) override {
+        return ranks_.gather(std::move(bytes));
+    }
+    std::string broadcast(std::string bytes) override {
+        std::string heard = ranks_.broadcast(std::move(bytes));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        return heard;
+    }
+    std::string pass(int to, std::string bytes) override {
+        return ranks_.pass(to, std::move(bytes));
+    }
+    std::vector<WorkList*> work_lists() override { return ranks_.work_lists(); }
+    void check() override { ranks_.check(); }
+    ExitCode fail(ExitCode code, const std::string& message) noexcept override {
+        return ranks_.fail(code, message);
+    }
+
+  private:
+    Communicator& ranks_;
+};
 
 std::string digests_of(const fs::path& path) {
     const OpenStore store(path);
@@ -75,6 +109,23 @@ TEST_CASE("a run on any number of ranks makes the store of one rank") {
             CHECK(reindex_on(count, request).publication.up_to_date);
         }
     }
+}
+
+TEST_CASE("a store that is up to date is not published while a late rank still opens the run") {
+    const TemporaryFolder folder;
+    generate_corpus({.frames = 600, .seed = 5, .subjects = 1}, folder / "takes", 1);
+    const ReindexRequest request = request_for(folder / "takes", folder / "store");
+    reindex(request, Log(), {});
+    run_as_ranks(2, [&](Communicator& ranks) {
+        LateCommunicator late(ranks);
+        ReindexRequest mine = request;
+        mine.ranks = ranks.is_root() ? &ranks : &late;
+        const RunSummary summary = reindex(mine, Log(), {});
+        if (ranks.is_root() && !summary.publication.up_to_date) {
+            throw std::logic_error("what was up to date is made again");
+        }
+    });
+    CHECK_FALSE(fs::exists(StoreDirectory::open(request.store).run_folder()));
 }
 
 TEST_CASE("a run that several ranks left is finished by another number of them") {

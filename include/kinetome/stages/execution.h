@@ -48,8 +48,9 @@ struct Execution {
 
 /// Makes the selected work that `finished` (find_finished) lacks: shards are shared out over the
 /// ranks by frames, other stages are made by all together. All ranks call it alike and return the
-/// same. Throws Interrupted between pieces of work, and UsageError when selected work needs inputs
-/// that are neither finished nor selected.
+/// same, none before all are through: the workspace may be removed then. Throws Interrupted between
+/// pieces of work, and UsageError when selected work needs inputs that are neither finished nor
+/// selected.
 FinishedPlan carry_out(const RunPlan& plan, FinishedPlan finished, const Selection& selection,
                        const Execution& execution);
 
