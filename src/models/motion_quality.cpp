@@ -50,17 +50,18 @@ FootSlide foot_slide(const Skeleton& skeleton, const MatrixFView& positions,
     return slide;
 }
 
-JointPeaks joint_peaks(const MatrixFView& positions, double rate) {
-    JointPeaks peaks;
+std::vector<JointPeaks> joint_peaks_by_frame(const MatrixFView& positions, double rate) {
+    std::vector<JointPeaks> peaks(static_cast<size_t>(positions.rows()));
     for (int64_t joint = 0; 3 * joint < positions.cols(); ++joint) {
         Eigen::Vector3d last_step;
         for (int64_t frame = 1; frame < positions.rows(); ++frame) {
+            JointPeaks& here = peaks[static_cast<size_t>(frame)];
             const Eigen::Vector3d step =
                 position(positions, frame, joint) - position(positions, frame - 1, joint);
-            peaks.speed = std::max(peaks.speed, step.norm() * rate);
+            here.speed = std::max(here.speed, step.norm() * rate);
             if (frame > 1) {
-                peaks.acceleration =
-                    std::max(peaks.acceleration, (step - last_step).norm() * rate * rate);
+                here.acceleration =
+                    std::max(here.acceleration, (step - last_step).norm() * rate * rate);
             }
             last_step = step;
         }
@@ -68,8 +69,18 @@ JointPeaks joint_peaks(const MatrixFView& positions, double rate) {
     return peaks;
 }
 
+JointPeaks joint_peaks(const MatrixFView& positions, double rate) {
+    JointPeaks peaks;
+    for (const JointPeaks& one : joint_peaks_by_frame(positions, rate)) peaks = larger(peaks, one);
+    return peaks;
+}
+
 std::vector<double> pose_steps(const Clip& clip) {
-    const MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, joint_positions(clip));
+    return pose_steps(clip, joint_positions(clip));
+}
+
+std::vector<double> pose_steps(const Clip& clip, const MatrixFView& positions) {
+    const MatrixF markers = normalised_markers(*clip.skeleton, clip.motion, positions);
     const double joints = static_cast<double>(markers.cols()) / 3;
     std::vector<double> steps;
     for (int64_t frame = 1; frame < markers.rows(); ++frame) {

@@ -23,38 +23,57 @@ double smoothstep_area(double share) {
     return cube - cube * share / 2;
 }
 
+/// Rises from 0 to 1, level at both ends and bent at neither.
+double smootherstep(double share) {
+    return share * share * share * (10 - share * (15 - 6 * share));
+}
+
 /// Going over from one side to the other. Time passes with the share s of the side that goes out as
 /// dt/ds = (1 - w) out + w in dr/ds, w = smoothstep(s), r(s) the share of the other side that
-/// answers: so it goes at the speed of each side where only that side is seen.
-struct Fade {
-    double out = 0, in = 0;                     ///< frames of the two sides
-    std::span<const double> registration = {};  ///< MotionRun::registration
-
-    double frames() const { return time(1); }
-    double in_share(double share) const { return registered_share(registration, share); }
-    double time(double share) const {
-        const double seen_out = out * (share - smoothstep_area(share));
-        if (registration.empty()) return seen_out + in * smoothstep_area(share);
-        const auto pieces = static_cast<double>(registration.size() - 1);
-        double seen_in = 0, area = 0;
-        for (size_t knot = 0; knot + 1 < registration.size(); ++knot) {
-            const double before = area;
-            const double end = std::min(static_cast<double>(knot + 1) / pieces, share);
-            area = smoothstep_area(end);
-            seen_in += (registration[knot + 1] - registration[knot]) * pieces * (area - before);
-            if (end == share) break;
-        }
-        return seen_out + in * seen_in;
+/// answers: so it goes at the speed of each side where only that side is seen. What it lasts longer
+/// than that takes is added in the middle.
+class Fade {
+  public:
+    Fade() = default;
+    /// Without `frames` as long as that takes.
+    Fade(double out, double in, std::span<const double> registration, double frames = 0)
+        : out_(out), in_(in), registration_(registration), frames_(natural_time(1)) {
+        if (frames > 0) added_ = frames - frames_;
+        frames_ += added_;
     }
+
+    double frames() const { return frames_; }
+    double added() const { return added_; }
+    double in_share(double share) const { return registered_share(registration_, share); }
     /// The inverse of time, by bisection: time rises with the share, however unlike the sides are.
     double share(double at) const {
         double low = 0, high = 1;
         for (int i = 0; i < 52; ++i) {
             const double middle = (low + high) / 2;
-            (time(middle) <= at ? low : high) = middle;
+            (natural_time(middle) + added_ * smootherstep(middle) <= at ? low : high) = middle;
         }
         return low;
     }
+
+  private:
+    double natural_time(double share) const {
+        const double seen_out = out_ * (share - smoothstep_area(share));
+        if (registration_.empty()) return seen_out + in_ * smoothstep_area(share);
+        const auto pieces = static_cast<double>(registration_.size() - 1);
+        double seen_in = 0, area = 0;
+        for (size_t knot = 0; knot + 1 < registration_.size(); ++knot) {
+            const double before = area;
+            const double end = std::min(static_cast<double>(knot + 1) / pieces, share);
+            area = smoothstep_area(end);
+            seen_in += (registration_[knot + 1] - registration_[knot]) * pieces * (area - before);
+            if (end == share) break;
+        }
+        return seen_out + in_ * seen_in;
+    }
+
+    double out_ = 0, in_ = 0;                    ///< frames of the two sides
+    std::span<const double> registration_ = {};  ///< MotionRun::registration
+    double frames_ = 0, added_ = 0;
 };
 
 /// One run on the time line of the whole.
@@ -73,7 +92,9 @@ struct TimedRun {
         if (left < after.frames()) {
             return run.end - run.fade_out * (1 - after.share(after.frames() - left));
         }
-        return run.first + run.fade_in + (time - before.frames());
+        const double alone = run.first + run.fade_in + (time - before.frames());
+        const double whole = std::nearbyint(alone);
+        return std::abs(alone - whole) < rounding ? whole : alone;
     }
     double weight(double at) const {
         const double time = at - start, left = end - at;
@@ -86,15 +107,19 @@ struct TimedRun {
     }
 };
 
+/// The fade into a run from the one before.
+Fade fade_into(std::span<const MotionRun> runs, size_t at) {
+    if (at == 0 || at == runs.size()) return {};
+    const MotionRun& run = runs[at];
+    return {runs[at - 1].fade_out, run.fade_in, run.registration, run.fade_frames};
+}
+
 std::vector<TimedRun> on_time_line(std::span<const MotionRun> runs) {
     std::vector<TimedRun> timed;
     double start = 0;
     for (size_t i = 0; i < runs.size(); ++i) {
         const MotionRun& run = runs[i];
-        const Fade before{i > 0 ? runs[i - 1].fade_out : 0, run.fade_in, run.registration};
-        const Fade after = i + 1 < runs.size()
-                               ? Fade{run.fade_out, runs[i + 1].fade_in, runs[i + 1].registration}
-                               : Fade{};
+        const Fade before = fade_into(runs, i), after = fade_into(runs, i + 1);
         const double alone = run.end - run.first - run.fade_in - run.fade_out;
         const double end = start + before.frames() + alone + after.frames();
         timed.push_back({run, before, after, start, end});
@@ -127,10 +152,15 @@ void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
             throw std::invalid_argument("motions to be joined must have one skeleton and one rate");
         }
         const double alone = run.end - run.first - run.fade_in - run.fade_out;
-        if (!(alone >= -rounding && run.fade_in >= 0 && run.fade_out >= 0)) {
+        if (!(alone >= -rounding && run.fade_in >= 0 && run.fade_out >= 0 &&
+              run.fade_frames >= 0)) {
             throw std::invalid_argument("a run is shorter than its fades");
         }
         check_registration(run.registration);
+    }
+    for (size_t i = 1; i < runs.size(); ++i) {
+        if (fade_into(runs, i).added() < -rounding)
+            throw std::invalid_argument("a fade is shorter than its motions take");
     }
     if (runs.front().fade_in != 0 || runs.back().fade_out != 0) {
         throw std::invalid_argument("the ends of a motion have nothing to fade with");
@@ -138,6 +168,16 @@ void check(std::span<const Clip> clips, std::span<const MotionRun> runs) {
 }
 
 }  // namespace
+
+double natural_fade_frames(double fade_out, double fade_in, std::span<const double> registration) {
+    return Fade(fade_out, fade_in, registration).frames();
+}
+
+std::vector<RunTime> times_of_runs(std::span<const MotionRun> runs) {
+    std::vector<RunTime> times;
+    for (const TimedRun& run : on_time_line(runs)) times.push_back({run.start, run.end});
+    return times;
+}
 
 double frames_of_runs(std::span<const MotionRun> runs) {
     return runs.empty() ? 0 : on_time_line(runs).back().end;

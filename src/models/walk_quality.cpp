@@ -29,7 +29,7 @@ std::map<int32_t, Measured> measured_clips(std::span<const Clip> clips,
         Measured& one = measured[run.clip];
         one.positions = joint_positions(clip);
         one.contacts = foot_contacts(*clip.skeleton, one.positions, clip.rate, options);
-        one.pose_steps = pose_steps(clip);
+        one.pose_steps = pose_steps(clip, one.positions);
     }
     return measured;
 }
@@ -67,8 +67,8 @@ WalkQuality measure_walk(std::span<const Clip> clips, std::span<const MotionRun>
         const Measured& take = takes.at(source.clip);
         contacts.push_back(take.contacts[static_cast<size_t>(take.inside(source.frame))]);
     }
-    quality.pose_step = largest_step(pose_steps(walk), whole(walk));
     const MatrixF positions = joint_positions(walk);
+    quality.pose_step = largest_step(pose_steps(walk, positions), whole(walk));
     quality.slide = foot_slide(*walk.skeleton, positions, contacts, walk.rate);
     quality.peaks = joint_peaks(positions, walk.rate);
     return quality;

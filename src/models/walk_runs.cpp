@@ -101,27 +101,50 @@ Crossing fade_lengths(const MotionPiece& entry, const MotionPiece& exit, double 
     return {.entry = in * share, .exit = out * share};
 }
 
+namespace {
+
+/// Goes over from the last run to the exit, about the middle of the crossing.
+void go_over(std::vector<MotionRun>& runs, const MotionRun& entry, const MotionRun& exit,
+             const Crossing& fade, const Crossing& middle) {
+    const double out =
+        entry.first + moved_inside(middle.entry, fade.entry, entry.end - entry.first);
+    const double in = exit.first + moved_inside(middle.exit, fade.exit, exit.end - exit.first);
+    runs.push_back(exit);
+    MotionRun& before = runs[runs.size() - 2];
+    MotionRun& after = runs.back();
+    if (fade.entry + fade.exit == 0) {
+        before.end = std::nearbyint(out);
+        after.first = std::nearbyint(in);
+        return;
+    }
+    // From whole frames to whole frames, in as much time as it would take without.
+    constexpr double rounding = 1e-9;
+    const double begin = std::max(std::floor(out - fade.entry / 2 + rounding), entry.first);
+    const double end = std::min(std::ceil(in + fade.exit / 2 - rounding), exit.end);
+    before.end = out + fade.entry / 2;
+    before.fade_out = before.end - begin;
+    after.first = in - fade.exit / 2;
+    after.fade_in = end - after.first;
+    after.registration = middle.registration;
+    const double sooner = before.fade_out - fade.entry, later = after.fade_in - fade.exit;
+    const double natural = natural_fade_frames(fade.entry, fade.exit, middle.registration);
+    after.fade_frames = std::ceil(natural * middle.slowness + sooner + later - rounding);
+}
+
+}  // namespace
+
 std::vector<MotionRun> runs_of_walk(
     const MotionGraph& graph, const std::vector<WalkStep>& steps, double fade_frames,
     const std::function<Crossing(int32_t entry, int32_t exit)>& crossing) {
     std::vector<MotionRun> runs;
     for (const WalkStep& step : steps) {
-        const MotionRun entry = run_of(graph.piece(step.entry));
-        const MotionRun exit = run_of(graph.piece(step.exit));
-        if (runs.empty()) runs.push_back(entry);
-        runs.back().end = entry.end;
+        const MotionPiece& entry = graph.piece(step.entry);
+        const MotionPiece& exit = graph.piece(step.exit);
+        if (runs.empty()) runs.push_back(run_of(entry));
+        runs.back().end = static_cast<double>(entry.end);
         if (step.entry == step.exit) continue;
-        const Crossing fade =
-            fade_lengths(graph.piece(step.entry), graph.piece(step.exit), fade_frames);
-        const Crossing middle = crossing(step.entry, step.exit);
-        runs.back().end = entry.first + fade.entry / 2 +
-                          moved_inside(middle.entry, fade.entry, entry.end - entry.first);
-        runs.back().fade_out = fade.entry;
-        runs.push_back(exit);
-        runs.back().first +=
-            moved_inside(middle.exit, fade.exit, exit.end - exit.first) - fade.exit / 2;
-        runs.back().fade_in = fade.exit;
-        runs.back().registration = middle.registration;
+        go_over(runs, run_of(entry), run_of(exit), fade_lengths(entry, exit, fade_frames),
+                crossing(step.entry, step.exit));
     }
     return runs;
 }

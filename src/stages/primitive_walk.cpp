@@ -124,18 +124,22 @@ PrimitiveWalk walk_primitives(const std::vector<ClipPrimitive>& primitives,
         graph, source, options,
         options.body.empty() ? graph.clips[static_cast<size_t>(first.clip)] : options.body);
     request.excess = [&](int32_t entry, int32_t exit) { return clips.excess(entry, exit); };
-    GraphWalk way = random_walk(pieces, request);
-    auto runs = clips.runs(way);
-    // Going over early in one piece and late in the next makes a walk shorter than it was planned.
-    while (frames_of_runs(runs) < wanted && !way.ended_early) {
-        request.frames += wanted - frames_of_runs(runs) + 1;
+    GraphWalk way;
+    std::vector<MotionRun> runs;
+    PrimitiveWalk walk{.motion = {}, .body = clips.body()};
+    do {
         way = random_walk(pieces, request);
         runs = clips.runs(way);
-    }
-
-    PrimitiveWalk walk{.motion = play_runs(clips.clips(), runs, clips.supports()),
-                       .body = clips.body(),
-                       .ended_early = frames_of_runs(runs) < wanted};
+        // Going over early in one piece and late in the next makes a walk shorter than it was
+        // planned.
+        while (frames_of_runs(runs) < wanted && !way.ended_early) {
+            request.frames += wanted - frames_of_runs(runs) + 1;
+            way = random_walk(pieces, request);
+            runs = clips.runs(way);
+        }
+        walk.motion = play_runs(clips.clips(), runs, clips.supports());
+    } while (clips.mend(way, runs, walk.motion));
+    walk.ended_early = frames_of_runs(runs) < wanted;
     walk.quality = measure_walk(clips.clips(), runs, walk.motion);
     for (const WalkStep& step : way.steps) {
         walk.path.push_back(graph.primitives[static_cast<size_t>(step.entry)]);

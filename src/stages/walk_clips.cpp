@@ -74,16 +74,40 @@ const Clip& WalkClips::clip(int32_t number) {
     Clip& clip = clips_[at];
     if (clip.skeleton) return clip;
     clip = retarget(resample(source_.read(graph_.clips[at]), graph_.rate), skeleton_);
-    const auto contacts = foot_contacts(*clip.skeleton, joint_positions(clip), clip.rate);
-    supports_[at] = foot_support(contacts, clip.rate);
-    peaks_[at] = measured_peaks(number);
+    const MatrixF positions = joint_positions(clip);
+    supports_[at] = foot_support(foot_contacts(*clip.skeleton, positions, clip.rate), clip.rate);
+    peaks_[at] = measured_peaks(number, positions);
     return clip;
 }
 
-WalkClips::Peaks WalkClips::measured_peaks(int32_t number) const {
+WalkClips::Peaks& WalkClips::Peaks::operator|=(const Peaks& other) {
+    pose_step = std::max(pose_step, other.pose_step);
+    joints = larger(joints, other.joints);
+    return *this;
+}
+
+double WalkClips::Peaks::excess(const Peaks& bound) const {
+    constexpr double rounding = 1e-4;  // of places on the floor, seen as accelerations
+    return std::max({share_above(pose_step, bound.pose_step),
+                     share_above(joints.speed, bound.joints.speed),
+                     share_above(joints.acceleration, bound.joints.acceleration)}) -
+           rounding;
+}
+
+std::vector<WalkClips::Peaks> WalkClips::peaks_by_frame(const Clip& clip,
+                                                        const MatrixFView& positions) {
+    const std::vector<double> steps = pose_steps(clip, positions);
+    const std::vector<JointPeaks> joints = joint_peaks_by_frame(positions, clip.rate);
+    std::vector<Peaks> peaks;
+    for (size_t frame = 0; frame < joints.size(); ++frame)
+        peaks.push_back({frame > 0 ? steps[frame - 1] : 0, joints[frame]});
+    return peaks;
+}
+
+WalkClips::Peaks WalkClips::measured_peaks(int32_t number, const MatrixFView& positions) const {
     const Clip& clip = clips_[static_cast<size_t>(number)];
-    const std::vector<double> steps = pose_steps(clip);
-    Peaks peaks{.joints = joint_peaks(joint_positions(clip), clip.rate)};
+    const std::vector<double> steps = pose_steps(clip, positions);
+    Peaks peaks{.joints = joint_peaks(positions, clip.rate)};
     for (const MotionPiece& piece : graph_.nodes.graph.pieces()) {
         if (piece.clip == number)
             peaks.pose_step = std::max(peaks.pose_step, largest_step(steps, run_of(piece)));
@@ -142,27 +166,53 @@ double WalkClips::excess(int32_t entry, int32_t exit) {
     const auto node = graph_.nodes.graph.node_of(entry);
     std::vector<MotionRun> there = runs({.steps = {{node, entry, exit}}});
     Peaks allowed;
-    for (const MotionRun& run : there) {
-        const Peaks& own = peaks_[static_cast<size_t>(run.clip)];
-        allowed.pose_step = std::max(allowed.pose_step, own.pose_step);
-        allowed.joints = larger(allowed.joints, own.joints);
-    }
-    // What is a frame long leaps from the frames before to those after. Fades last whole or half
-    // frames: a walk comes there on a frame or between two.
-    const double first = there.front().first;
+    for (const MotionRun& run : there) allowed |= peaks_[static_cast<size_t>(run.clip)];
+    // What is a frame long leaps from the frames before to those after.
+    there.front().first -= 2;
     there.back().end += 2;
+    const Clip played = play_runs(clips_, there, supports_);
     Peaks largest;
-    for (const double before : {2., 2.5}) {
-        there.front().first = first - before;
-        const Clip played = play_runs(clips_, there, supports_);
-        const MotionRun whole{.first = 0, .end = static_cast<double>(played.frames())};
-        largest.pose_step = std::max(largest.pose_step, largest_step(pose_steps(played), whole));
-        largest.joints = larger(largest.joints, joint_peaks(joint_positions(played), played.rate));
+    for (const Peaks& peaks : peaks_by_frame(played, joint_positions(played))) largest |= peaks;
+    return found->second = largest.excess(allowed);
+}
+
+bool WalkClips::mend(const GraphWalk& walk, const std::vector<MotionRun>& runs,
+                     const Clip& motion) {
+    const std::vector<RunTime> times = times_of_runs(runs);
+    const auto frames = static_cast<double>(motion.frames());
+    const auto for_each_frame = [&](double first, double end, const auto& visit) {
+        for (double at = std::max(first, 0.0); at < std::min(end, frames); ++at)
+            visit(static_cast<size_t>(at));
+    };
+    // A frame is told from the two before.
+    constexpr double reach = 2;
+    std::vector<Peaks> allowed(static_cast<size_t>(motion.frames()));
+    for (size_t i = 0; i < runs.size(); ++i) {
+        for_each_frame(times[i].first, times[i].end + reach, [&](size_t frame) {
+            allowed[frame] |= peaks_[static_cast<size_t>(runs[i].clip)];
+        });
     }
-    return found->second =
-               std::max({share_above(largest.pose_step, allowed.pose_step),
-                         share_above(largest.joints.speed, allowed.joints.speed),
-                         share_above(largest.joints.acceleration, allowed.joints.acceleration)});
+    const std::vector<Peaks> peaks = peaks_by_frame(motion, joint_positions(motion));
+    constexpr double slower = 1.25, slowest = 8;
+    bool is_mended = false;
+    size_t run = 0;
+    for (const WalkStep& step : walk.steps) {
+        if (step.entry == step.exit) continue;
+        ++run;
+        double largest = 0;
+        for_each_frame(times[run].first, times[run - 1].end + reach, [&](size_t frame) {
+            largest = std::max(largest, peaks[frame].excess(allowed[frame]));
+        });
+        if (largest <= 0) continue;
+        const std::pair pair(step.entry, step.exit);
+        double& slowness = crossings_.at(pair).slowness;
+        double& known = excesses_[pair];
+        if (known > 0 && slowness * slower > slowest) continue;
+        if (known > 0) slowness *= slower;
+        known = std::max(known, largest);
+        is_mended = true;
+    }
+    return is_mended;
 }
 
 }  // namespace kinetome

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinetome/base/matrix.h"
 #include "kinetome/models/graph_walk.h"
 #include "kinetome/models/motion_blend.h"
 #include "kinetome/models/motion_quality.h"
@@ -32,14 +33,23 @@ class WalkClips {
     /// By what share of it going over from the one to the other exceeds what their clips do: how
     /// fast a pose changes in the pieces of both, how fast a joint moves, how hard it is thrown.
     double excess(int32_t entry, int32_t exit);
+    /// Where a walk's motion exceeds what its clips do, going over has an excess from now on: what
+    /// is in order alone need not be where one follows the other at once. What had one already, and
+    /// was walked for want of another way, lasts longer from now on. False when neither is so.
+    bool mend(const GraphWalk& walk, const std::vector<MotionRun>& runs, const Clip& motion);
 
   private:
-    /// The largest of a motion.
+    /// The largest of a motion, or of a frame.
     struct Peaks {
         double pose_step = 0;
         JointPeaks joints;
+
+        Peaks& operator|=(const Peaks& other);
+        /// By what share of it one of them is above its bound; negative below.
+        double excess(const Peaks& bound) const;
     };
-    Peaks measured_peaks(int32_t clip) const;
+    static std::vector<Peaks> peaks_by_frame(const Clip& clip, const MatrixFView& positions);
+    Peaks measured_peaks(int32_t clip, const MatrixFView& positions) const;
     const Clip& clip(int32_t number);
     const Crossing& crossing(int32_t entry, int32_t exit);
     /// Where fades of these lengths pass best from the one piece to the other.

@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "kinetome/base/random.h"
+
 using namespace kinetome;
 
 namespace {
@@ -157,6 +159,51 @@ TEST_CASE("where nothing fits a walk takes what fits best") {
     for (size_t i = 0; i + 1 < walk.steps.size(); ++i) CHECK(walk.steps[i].exit == 1);
 }
 
+TEST_CASE(
+    "a walk to a node goes round what does not fit, and where it must not, by what fits best") {
+    const std::vector<std::string> clips = {"fabcd", "bacab", "cbdba", "adcbd", "dcabe"};
+    const auto graph = graph_of(clips, 6);  // one f to begin with, one e to end with
+    const auto pieces = int32_t(graph.pieces().size());
+    int64_t round_about = 0, without_fit = 0;
+    for (uint64_t seed = 0; seed < 60; ++seed) {
+        RandomStream random(seed, "misfits");
+        std::vector<double> misfit;
+        for (int32_t pair = 0; pair < pieces * pieces; ++pair)
+            misfit.push_back(random.below(100) < 20 + seed ? 1 + double(random.below(8)) : 0);
+        const auto excess = [&](int32_t entry, int32_t exit) {
+            return misfit[size_t(entry * pieces + exit)];
+        };
+        // Bellman and Ford: the least that getting into each piece exceeds.
+        std::vector<double> least(size_t(pieces), HUGE_VAL);
+        const int32_t first = graph.members(5).front(), last = graph.members(4).front();
+        least[size_t(first)] = 0;
+        for (int32_t turn = 0; turn < pieces; ++turn) {
+            for (int32_t entry = 0; entry < pieces; ++entry) {
+                for (const Succession& way : graph.ways_on(graph.node_of(entry))) {
+                    double& there = least[size_t(way.next)];
+                    there = std::min(there, least[size_t(entry)] + excess(entry, way.piece));
+                }
+            }
+        }
+        const WalkRequest request{.seed = seed, .from = {5}, .to = {4}, .excess = excess};
+        const auto walk = random_walk(graph, request);
+        check_continuous(graph, walk);
+        REQUIRE(walk.steps.back().entry == last);
+        const auto excess_of = [&](const GraphWalk& one) {
+            double sum = 0;
+            for (const WalkStep& step : one.steps) sum += excess(step.entry, step.exit);
+            return sum;
+        };
+        const double found = excess_of(walk);
+        CHECK(found == least[size_t(last)] + excess(last, last));
+        without_fit += found > 0;
+        const auto straight = random_walk(graph, {.seed = seed, .from = {5}, .to = {4}});
+        round_about += found == 0 && excess_of(straight) > 0;
+    }
+    CHECK(round_about > 5);
+    CHECK(without_fit > 5);
+}
+
 TEST_CASE("a walk that nothing can follow says that it ended early") {
     const auto graph = graph_of({"abc", "bd"}, 4);
     const auto walk = random_walk(graph, {.frames = 1000, .from = {0}});
@@ -181,9 +228,9 @@ TEST_CASE("inside a node a walk goes over in the middle, elsewhere it plays take
                             2, 10);
     const std::vector<WalkStep> steps = {{0, 0, 2}, {1, 3, 3}};
     CHECK(runs_of_walk(graph, steps, 10) ==
-          std::vector<MotionRun>{{0, 0, 24, 0, 8}, {1, 124, 200, 12, 0}});
+          std::vector<MotionRun>{{0, 0, 24, 0, 8}, {1, 124, 200, 12, 0, 10}});
     CHECK(runs_of_walk(graph, steps, 1000) ==
-          std::vector<MotionRun>{{0, 0, 40, 0, 40}, {1, 100, 200, 60, 0}});
+          std::vector<MotionRun>{{0, 0, 40, 0, 40}, {1, 100, 200, 60, 0, 50}});
     CHECK(runs_of_walk(graph, {{0, 2, 2}, {1, 3, 3}}, 10) == std::vector<MotionRun>{{1, 100, 200}});
 }
 
@@ -230,7 +277,33 @@ TEST_CASE("a crossing near the end of a piece is moved until the fade fits") {
     const std::vector<WalkStep> steps = {{0, 0, 2}, {1, 3, 3}};
     const auto crossing = [](int32_t, int32_t) { return Crossing{39, 3}; };
     CHECK(runs_of_walk(graph, steps, 10, crossing) ==
-          std::vector<MotionRun>{{0, 0, 40, 0, 8}, {1, 100, 200, 12, 0}});
+          std::vector<MotionRun>{{0, 0, 40, 0, 8}, {1, 100, 200, 12, 0, 10}});
+}
+
+TEST_CASE("fades begin and end at whole frames, whatever the crossing") {
+    const MotionGraph graph({{0, 0, 41}, {0, 41, 60}, {1, 100, 163}, {1, 170, 200}}, {0, 1, 0, 1},
+                            2, 10);
+    const std::vector<WalkStep> steps = {{0, 0, 2}, {1, 3, 3}};
+    const auto is_whole = [](double frame) {
+        return std::abs(frame - std::nearbyint(frame)) < 1e-9;
+    };
+    for (const double fade : {0.0, 0.3, 7.7, 1000.0}) {
+        for (const double at : {0.1, 17.3, 40.6}) {
+            const auto runs = runs_of_walk(graph, steps, fade, [&](int32_t, int32_t) {
+                return Crossing{at, 1.4 * at, {0, 0.3, 0.45, 1}};
+            });
+            REQUIRE(runs.size() == 2);
+            CAPTURE(fade, at, runs[0].end, runs[0].fade_out, runs[1].first, runs[1].fade_in);
+            CHECK(is_whole(runs[0].end - runs[0].fade_out));
+            CHECK(is_whole(runs[1].first + runs[1].fade_in));
+            CHECK(is_whole(frames_of_runs(runs)));
+            CHECK(runs[0].end - runs[0].fade_out >= 0);
+            CHECK(runs[1].first + runs[1].fade_in <= 163);
+            const double natural =
+                natural_fade_frames(runs[0].fade_out, runs[1].fade_in, runs[1].registration);
+            CHECK(std::abs(runs[1].fade_frames - natural) < 3);
+        }
+    }
 }
 
 TEST_CASE("a walk goes from one body's motions to another's by linked nodes") {

@@ -186,6 +186,24 @@ TEST_CASE("a fade between motions of unlike length begins and ends at the speed 
     CHECK(largest_step(played) < 1.1 * std::max(largest_step(slow), largest_step(fast)));
 }
 
+TEST_CASE("a fade that is to last longer is slower in between, and no less smooth at its ends") {
+    const Clip walk = clip_of(strides(200, 100, 1, 0.4));
+    const std::vector<MotionRun> runs = {{0, 0, 100, 0, 60}, {0, 40, 140, 60, 0, 90}};
+    CHECK(frames_of_runs(runs) == Approx(170));
+    const Clip played = play_runs(std::vector{walk}, runs);
+    REQUIRE(played.frames() == 170);
+    const auto step = [&](int64_t i) {
+        return double(played.motion(i, root_z)) - double(played.motion(i - 1, root_z));
+    };
+    for (int64_t i = 1; i < 170; ++i) {
+        const bool fades = i >= 40 && i <= 130;
+        CHECK(step(i) < 1 + 1e-3);
+        CHECK(step(i) > (fades ? 0.5 : 1 - 1e-3));
+        if (i > 1) CHECK(std::abs(step(i) - step(i - 1)) < 0.03);
+    }
+    CHECK(step(85) < 0.6);
+}
+
 TEST_CASE("feet that stand on both sides of a fade stay where they are, feet in the air do not") {
     // Two bodies that stand still, one leaning forward, one back: their feet are under different
     // places of the root.
@@ -259,6 +277,8 @@ TEST_CASE("what cannot be joined is refused") {
     CHECK_THROWS_AS(play(other_body, {whole(0, 50), whole(1, 50)}), std::invalid_argument);
     CHECK_THROWS_AS(play(clip, {{0, 0, 10, 0, 20}, {1, 0, 50, 20, 0}}), std::invalid_argument);
     CHECK_THROWS_AS(play(clip, {{0, 0, 10, 5, 0}}), std::invalid_argument);
+    CHECK_THROWS_AS(play(clip, {{0, 0, 20, 0, 10}, {1, 0, 50, 10, 0, 9}}), std::invalid_argument);
+    CHECK_NOTHROW(play(clip, {{0, 0, 20, 0, 10}, {1, 0, 50, 10, 0, 11}}));
     CHECK_THROWS_AS(blend_motions(std::vector<BlendPart>{}), std::invalid_argument);
     CHECK_THROWS_AS(blend_motions(std::vector<BlendPart>{{&clip, 0, 50, 0}}),
                     std::invalid_argument);

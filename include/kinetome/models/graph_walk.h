@@ -39,14 +39,14 @@ struct GraphWalk {
 
 /// Goes from node to node as the takes do: each succession out of a node, or out of one linked with
 /// it, is as likely as any other.
-/// Those with an excess are not taken; where a walk could go on with excess only, it goes back and
-/// takes another way. What excess is left is on the way to `to`, or in graphs without another way.
-/// It keeps to nodes from which one of `to` can be reached, and does not get stuck while there is a
+/// Those with an excess are not taken; where a walk could go on, or reach `to`, with excess only,
+/// it goes back and takes another way. What excess is left is in graphs without another way. It
+/// keeps to nodes from which one of `to` can be reached, and does not get stuck while there is a
 /// way out: it leads to the cycle of nodes with most pieces among those within reach, and stays.
-/// From the moment when the shortest way to `to` fills the wanted length it takes that way; so
-/// with `to` the walk ends with a whole piece, else with the first piece that fills the length.
-/// No steps when no node of `from` leads to one of `to`. Throws std::invalid_argument for nodes
-/// that are not there.
+/// From the moment when the shortest way to `to` fills the wanted length it takes a short way
+/// there; so with `to` the walk ends with a whole piece, else with the first piece that fills the
+/// length. No steps when no node of `from` leads to one of `to`. Throws std::invalid_argument for
+/// nodes that are not there.
 GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request);
 
 /// Where a walk goes over from a piece to another of the same node: frames after their firsts, at
@@ -54,6 +54,7 @@ GraphWalk random_walk(const MotionGraph& graph, const WalkRequest& request);
 struct Crossing {
     double entry = 0, exit = 0;
     std::vector<double> registration = {};  ///< MotionRun::registration of the fade
+    double slowness = 1;                    ///< how many natural_fade_frames it lasts, 1 or more
 };
 
 /// Where the pieces agree best: of all moments that dynamic time warping finds to answer each other
@@ -72,7 +73,8 @@ Crossing fade_lengths(const MotionPiece& entry, const MotionPiece& exit, double 
 /// What the walk plays: inside a node it goes over from the entry to the exit where
 /// `crossing(entry, exit)` says, moved as far as the fade (fade_lengths) needs to stay inside the
 /// pieces; from node to node it goes on in the clip of the exit, with the frames that lie between.
-/// So every seam is one that a take has.
+/// So every seam is one that a take has. Fades begin and end at whole frames and last whole ones:
+/// between them the frames of the takes are played, and a crossing is the same in every walk.
 std::vector<MotionRun> runs_of_walk(
     const MotionGraph& graph, const std::vector<WalkStep>& steps, double fade_frames,
     const std::function<Crossing(int32_t entry, int32_t exit)>& crossing);

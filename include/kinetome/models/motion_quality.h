@@ -32,11 +32,15 @@ struct JointPeaks {
     double acceleration = 0;  ///< cm/s²
 };
 JointPeaks joint_peaks(const MatrixFView& positions, double rate);
+/// Of each frame, as it is come to from the one before, and from the two before.
+std::vector<JointPeaks> joint_peaks_by_frame(const MatrixFView& positions, double rate);
 JointPeaks larger(const JointPeaks& one, const JointPeaks& other);
 
 /// How fast the pose of each frame changes to that of the next, place and heading removed, cm/s:
 /// the root mean square over the markers (normalised_markers). One less than the clip has frames.
 std::vector<double> pose_steps(const Clip& clip);
+/// The same, of a clip whose joint_positions are known.
+std::vector<double> pose_steps(const Clip& clip, const MatrixFView& positions);
 /// The largest of those inside a run's frames of its clip; 0 where there is none.
 double largest_step(std::span<const double> pose_steps, const MotionRun& run);
 
