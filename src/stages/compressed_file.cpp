@@ -141,7 +141,7 @@ CompressedSize write_compressed(const std::filesystem::path& path, const Compres
 CompressedFile::CompressedFile(std::filesystem::path path) : path_(std::move(path)) {
     std::error_code error;
     const auto bytes = static_cast<int64_t>(std::filesystem::file_size(path_, error));
-    if (error) throw damaged(path_, error.message());
+    if (error) throw InputError::in_file(path_.string(), "cannot be read: " + error.message());
     if (bytes < preamble || read_bytes(path_, 0, std::ssize(magic)) != magic) {
         throw damaged(path_, "it is no compressed motion (kinetome compress makes such files)");
     }

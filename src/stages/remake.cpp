@@ -77,8 +77,10 @@ RunSummary remake(const RemakeRequest& request, const Log& terminal, const StopT
     RunInProgress run(store, terminal);
     run.workspace().remove_leftovers();
     if (!run.last()) {
-        throw Error(ExitCode::nothing_usable, path_for_message(request.store.string()) +
-                                                  ": no generation to go on from was published");
+        throw UsageError(
+            fmt::format("{0} has no generation yet to go on from; `kinetome reindex CORPUS --store "
+                        "{0}` makes one",
+                        path_for_message(request.store.string())));
     }
     RunRecord record = record_of(*run.last());
     set_options(request.options, record.options);

@@ -9,20 +9,10 @@
 #include "kinetome/stages/bundle_file.h"
 
 namespace kinetome {
-
 namespace {
-
-void require_bundles(const Generation& generation) {
-    if (!generation.ledger().find("bundle_graph.h5")) {
-        throw UsageError(
-            "the store has no motion bundles yet; kinetome reindex CORPUS --store STORE makes "
-            "them");
-    }
-}
 
 /// Members of nodes, at the sources' rates.
 std::vector<ClipPrimitive> node_members(const Generation& generation) {
-    require_bundles(generation);
     const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
     const auto node_of = read_bundle_graph(generation.open("bundle_graph.h5"), bundles).node_of;
     std::vector<ClipPrimitive> members;
@@ -70,7 +60,6 @@ std::vector<ClipPrimitive> stored_bundle_members(const OpenStore& open,
 }
 
 std::vector<ClusterLink> stored_bundle_links(const Generation& generation) {
-    require_bundles(generation);
     const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
     const StoredBundleGraph graph = read_bundle_graph(generation.open("bundle_graph.h5"), bundles);
     std::vector<int32_t> bundle_of;  // by node
@@ -108,7 +97,6 @@ Table bundle_list(const OpenStore& open, const std::filesystem::path& labels) {
 }
 
 BundleShares bundle_shares(const Generation& generation) {
-    require_bundles(generation);
     const StoredBundles bundles = read_bundles(generation.open("bundles.h5"));
     return {.frames = read_bundle_graph(generation.open("bundle_graph.h5"), bundles).bundles.frames,
             .file_bytes = generation.ledger().find("bundles.h5")->file.bytes};

@@ -24,7 +24,7 @@ StoredClip StoredClips::read(const std::string& name) {
     const CatalogClip& clip = find(name);
     auto shard = shards_.find(clip.shard);
     if (shard == shards_.end()) {
-        for (const Receipt* const receipt : generation_.ledger().of_stage("frames")) {
+        for (const Receipt* const receipt : generation_.made_by("frames")) {
             if (receipt->shard != clip.shard) continue;
             shard = shards_
                         .emplace(clip.shard,

@@ -20,7 +20,7 @@ namespace {
 /// Calls take(place, effectors, effector rate) for each clip that has effectors, shard by shard.
 template <class Take>
 void for_each_effectors(const Generation& generation, const Take& take) {
-    for (const Receipt* const receipt : generation.ledger().of_stage("features")) {
+    for (const Receipt* const receipt : generation.made_by("features")) {
         const FeatureShardReader shard(generation.open(receipt->file.file_name));
         for (const FeatureShardClip& clip : shard.clips()) {
             if (clip.effector_rows == 0) continue;

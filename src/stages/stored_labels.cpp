@@ -20,7 +20,7 @@ namespace {
 class EffectorShards {
   public:
     explicit EffectorShards(const Generation& generation) {
-        for (const Receipt* receipt : generation.ledger().of_stage("features")) {
+        for (const Receipt* receipt : generation.made_by("features")) {
             shards_.emplace_back(generation.open(receipt->file.file_name));
         }
         for (size_t s = 0; s < shards_.size(); ++s) {

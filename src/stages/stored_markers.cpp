@@ -49,7 +49,7 @@ MarkerTakes joined(Collected& collected) {
 std::vector<MarkerTakes> stored_markers(const Generation& generation, const std::string& patterns) {
     const std::vector<std::string> wanted = parts_of(patterns);
     std::map<std::string, Collected> classes;
-    for (const Receipt* const receipt : generation.ledger().of_stage("features")) {
+    for (const Receipt* const receipt : generation.made_by("features")) {
         const FeatureShardReader shard(generation.open(receipt->file.file_name));
         for (const FeatureShardClip& clip : shard.clips()) {
             if (clip.pose_rows == 0 || !matches(clip.name, wanted)) continue;

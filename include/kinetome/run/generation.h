@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "kinetome/base/error.h"
 #include "kinetome/run/ledger.h"
 #include "kinetome/store/artifact.h"
 #include "kinetome/store/catalog.h"
@@ -23,10 +26,16 @@ class Generation {
     const Ledger& ledger() const { return ledger_; }
     const Catalog& catalog() const { return catalog_; }
 
-    /// Opens an artifact after its hash is checked. Throws StoreError when it is not in the ledger.
+    /// Opens an artifact after its hash is checked. Throws StoreError, and UsageError when its
+    /// stage was left out: it is not in the ledger.
     ArtifactReader open(const std::string& file_name) const;
+    /// All that a stage made, in clip order. Throws UsageError when it was left out.
+    std::vector<const Receipt*> made_by(std::string_view stage) const;
 
   private:
+    UsageError left_out(std::string_view stage) const;
+
+    std::filesystem::path store_;
     std::string id_;
     std::filesystem::path folder_;
     VerifiedFiles* verified_;
