@@ -179,7 +179,12 @@ Publication prepare_publication(const RunPlan& plan, const FinishedPlan& all_fin
     }
     for (const StageRow& stage : stage_table()) {
         if (!stage.is_wanted(plan.options)) continue;
-        if (!complete.count(stage.name)) log.warning("{}: not complete, left out", stage.name);
+        if (complete.count(stage.name)) continue;
+        if (last && !last->ledger().of_stage(stage.name).empty()) {
+            log.warning("{}: not complete, left out; generation {} has it", stage.name, last->id());
+        } else {
+            log.info("{}: not complete, left out", stage.name);
+        }
     }
     const FinishedPlan finished = work_of(complete, plan, all_finished);
     Publication publication;
