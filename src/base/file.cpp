@@ -4,10 +4,12 @@
 
 #include <cstdio>
 #include <deque>
+#include <optional>
 #include <system_error>
 #include <vector>
 
 #include "descriptor.h"
+#include "kinetome/base/file_writer.h"
 
 namespace kinetome {
 namespace {
@@ -123,13 +125,36 @@ class TemporaryFile {
 };
 
 /// A pipe or a device, which no file may take the place of.
-void write_into(const fs::path& path, std::string_view text) {
-    const Descriptor file(path, O_WRONLY);
-    if (!file.valid() || !write_all(file, text)) throw create_error("write", path, errno);
-}
+class Stream {
+  public:
+    explicit Stream(const fs::path& path) : path_(path), file_(path, O_WRONLY) {
+        if (!file_.valid()) throw create_error("write", path_, errno);
+    }
+    void write(std::string_view text) {
+        if (!write_all(file_, text)) throw create_error("write", path_, errno);
+    }
+
+  private:
+    fs::path path_;
+    Descriptor file_;
+};
 
 fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// What is replaced when `path` is: links are followed.
+fs::path target_of(const fs::path& path) {
+    std::error_code none;
+    fs::path target = fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
+    if (fs::is_directory(fs::status(target, none))) throw create_error("replace", target, EISDIR);
+    return target;
+}
+
+bool is_stream(const fs::path& target) {
+    std::error_code none;
+    const fs::file_status there = fs::status(target, none);
+    return fs::exists(there) && !fs::is_regular_file(there);
 }
 
 }  // namespace
@@ -161,20 +186,42 @@ void write_files_atomically(std::span<const FileText> files) {
     std::deque<TemporaryFile> written;
     std::vector<FileText> streams;
     for (const auto& [path, text] : files) {
-        std::error_code none;
-        const fs::path target =
-            fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
-        const fs::file_status there = fs::status(target, none);
-        if (fs::is_directory(there)) throw create_error("replace", target, EISDIR);
-        if (fs::exists(there) && !fs::is_regular_file(there)) {
+        const fs::path target = target_of(path);
+        if (is_stream(target)) {
             streams.push_back({target, text});
         } else {
             written.emplace_back(target).write(text);
         }
     }
-    for (const auto& [path, text] : streams) write_into(path, text);
+    for (const auto& [path, text] : streams) Stream(path).write(text);
     for (TemporaryFile& file : written) file.sync_and_rename();
     for (const TemporaryFile& file : written) fsync_directory(folder_of(file.target()));
+}
+
+struct FileWriter::State {
+    std::optional<Stream> stream;
+    std::optional<TemporaryFile> file;
+
+    explicit State(const fs::path& target) {
+        if (is_stream(target)) {
+            stream.emplace(target);
+        } else {
+            file.emplace(target);
+        }
+    }
+};
+
+FileWriter::FileWriter(const fs::path& path) : state_(std::make_unique<State>(target_of(path))) {}
+FileWriter::~FileWriter() = default;
+
+void FileWriter::write(std::string_view text) {
+    state_->stream ? state_->stream->write(text) : state_->file->write(text);
+}
+
+void FileWriter::close() {
+    if (!state_->file) return;
+    state_->file->sync_and_rename();
+    fsync_directory(folder_of(state_->file->target()));
 }
 
 void copy_to_new_file(const fs::path& source, const fs::path& target) {

@@ -54,6 +54,13 @@ std::string exported(const ExportFlags& flags) {
     return write_table(export_table(open, flags.what, flags.labels), format);
 }
 
+void export_neighbors(const ExportFlags& flags) {
+    const TableFormat format = parse_table_format(format_of(flags, "csv"));
+    const OpenStore open(flags.store, flags.generation);
+    write_text(flags.output,
+               [&](const TakeText& take) { write_neighbors(open.generation, format, take); });
+}
+
 }  // namespace
 
 Command export_command() {
@@ -79,8 +86,11 @@ Command export_command() {
             app.add_option("--generation", flags->generation,
                            "id, the beginning of one, or current");
             return [=](const Invocation&) {
-                const std::string text = exported(*flags);
-                write_text(flags->output, text);
+                if (flags->what == "neighbors") {
+                    export_neighbors(*flags);
+                } else {
+                    write_text(flags->output, exported(*flags));
+                }
                 return ExitCode::success;
             };
         }};

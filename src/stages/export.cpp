@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
+#include <utility>
 
 #include "kinetome/base/csv.h"
 #include "kinetome/base/error.h"
@@ -27,9 +27,8 @@ std::string number_text(const Table::Cell& cell) {
     return fmt::format("{}", std::get<double>(cell));
 }
 
-std::string write_csv(const Table& table) {
+std::string csv_rows(const Table& table) {
     std::string text;
-    append_csv_line(text, table.columns);
     for (const auto& row : table.rows) {
         std::vector<std::string> cells;
         for (const Table::Cell& cell : row) {
@@ -41,7 +40,8 @@ std::string write_csv(const Table& table) {
     return text;
 }
 
-std::string write_json(const Table& table) {
+/// Those of an array, without its brackets.
+std::string json_rows(const Table& table) {
     Json rows = Json::array();
     for (const auto& row : table.rows) {
         Json object = Json::object();
@@ -51,7 +51,8 @@ std::string write_json(const Table& table) {
         rows.push_back(std::move(object));
     }
     // Bytes that are no UTF-8 have no JSON: a reader gets U+FFFD.
-    return rows.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string array = rows.dump(1, ' ', false, Json::error_handler_t::replace);
+    return array.substr(1, array.size() - 2);
 }
 
 /// Letters of one partition; frames at the pose rate become frames of the source: a source frame
@@ -88,6 +89,24 @@ void append_letters(const ArtifactReader& file, const std::string& partition, Ta
     }
 }
 
+/// The graph of one clip.
+void append_neighbors(const NeighborShardReader& shard, size_t number, Table& table) {
+    const NeighborClip& clip = shard.clips()[number].clip;
+    const double rate = shard.effector_rate(clip.clip_class);
+    const auto in_source = [&](int64_t frame) {
+        return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, rate)));
+    };
+    const StoredNeighbors graph = shard.read(number);
+    for (size_t frame = 0; frame + 1 < graph.offsets.size(); ++frame) {
+        for (auto e = static_cast<size_t>(graph.offsets[frame]);
+             e < static_cast<size_t>(graph.offsets[frame + 1]); ++e) {
+            table.rows.push_back({clip.name, in_source(static_cast<int64_t>(frame)),
+                                  in_source(graph.neighbours[e]),
+                                  static_cast<double>(graph.distances[e])});
+        }
+    }
+}
+
 }  // namespace
 
 TableFormat parse_table_format(std::string_view name) {
@@ -96,8 +115,33 @@ TableFormat parse_table_format(std::string_view name) {
     throw UsageError(fmt::format("--format {}: expected csv or json", name));
 }
 
+TableWriter::TableWriter(const Table& header, TableFormat format, const TakeText& take)
+    : format_(format), take_(take) {
+    std::string text;
+    if (format_ == TableFormat::csv) append_csv_line(text, header.columns);
+    take_(format_ == TableFormat::csv ? text : "[");
+}
+
+void TableWriter::append(const Table& table) {
+    if (table.rows.empty()) return;
+    if (format_ == TableFormat::csv) return take_(csv_rows(table));
+    std::string rows = json_rows(table);
+    rows.pop_back();  // the end of the line, before the bracket
+    if (!std::exchange(empty_, false)) take_(",");
+    take_(rows);
+}
+
+void TableWriter::close() {
+    if (format_ == TableFormat::json) take_(empty_ ? "]\n" : "\n]\n");
+}
+
 std::string write_table(const Table& table, TableFormat format) {
-    return format == TableFormat::csv ? write_csv(table) : write_json(table);
+    std::string text;
+    const TakeText take = [&](std::string_view piece) { text += piece; };
+    TableWriter out(table, format, take);
+    out.append(table);
+    out.close();
+    return text;
 }
 
 Table clip_table(const Generation& generation) {
@@ -176,33 +220,23 @@ Table primitive_table(const OpenStore& open, const std::filesystem::path& labels
     return table;
 }
 
-Table neighbor_table(const Generation& generation) {
-    Table table{{"clip", "frame", "neighbour", "distance"}, {}};
-    std::map<std::string, std::vector<std::vector<Table::Cell>>> rows_of;  // by clip name
-    for (const Receipt* receipt : generation.ledger().of_stage("neighbors")) {
+void write_neighbors(const Generation& generation, TableFormat format, const TakeText& take) {
+    const auto shards = generation.made_by("neighbors");
+    const Table header{{"clip", "frame", "neighbour", "distance"}, {}};
+    TableWriter out(header, format, take);
+    for (const Receipt* const receipt : shards) {
         const NeighborShardReader shard(generation.open(receipt->file.file_name));
+        std::map<std::string, size_t> in_name_order;
         for (size_t i = 0; i < shard.clips().size(); ++i) {
-            const NeighborClip& clip = shard.clips()[i].clip;
-            const double rate = shard.effector_rate(clip.clip_class);
-            const auto in_source = [&](int64_t frame) {
-                return static_cast<int64_t>(std::ceil(source_frame(frame, clip.source_rate, rate)));
-            };
-            const StoredNeighbors graph = shard.read(i);
-            auto& rows = rows_of[clip.name];
-            for (size_t frame = 0; frame + 1 < graph.offsets.size(); ++frame) {
-                for (auto e = static_cast<size_t>(graph.offsets[frame]);
-                     e < static_cast<size_t>(graph.offsets[frame + 1]); ++e) {
-                    rows.push_back({clip.name, in_source(static_cast<int64_t>(frame)),
-                                    in_source(graph.neighbours[e]),
-                                    static_cast<double>(graph.distances[e])});
-                }
-            }
+            in_name_order[shard.clips()[i].clip.name] = i;
+        }
+        for (const auto& [name, number] : in_name_order) {
+            Table rows = header;
+            append_neighbors(shard, number, rows);
+            out.append(rows);
         }
     }
-    for (auto& [name, rows] : rows_of) {
-        std::move(rows.begin(), rows.end(), std::back_inserter(table.rows));
-    }
-    return table;
+    out.close();
 }
 
 Table hierarchy_table(const Generation& generation) {
@@ -228,7 +262,6 @@ Table export_table(const OpenStore& open, std::string_view what,
     if (what == "clips") return clip_table(generation);
     if (what == "letters") return letter_table(generation);
     if (what == "bundles") return bundle_table(generation);
-    if (what == "neighbors") return neighbor_table(generation);
     if (what == "segments") return segment_table(generation);
     if (what == "primitives") return primitive_table(open, labels);
     if (what == "hierarchy") return hierarchy_table(generation);

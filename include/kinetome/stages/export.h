@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "kinetome/base/file_writer.h"
 #include "kinetome/stages/open_store.h"
 
 namespace kinetome {
@@ -26,6 +27,22 @@ TableFormat parse_table_format(std::string_view name);
 /// CSV by RFC 4180, text cells guarded against spreadsheet formulas; or a JSON array of objects.
 std::string write_table(const Table& table, TableFormat format);
 
+/// The same of a table that is written as it is made.
+class TableWriter {
+  public:
+    /// `take` outlives it.
+    TableWriter(const Table& header, TableFormat format, const TakeText& take);
+
+    /// The rows; the columns are those of the header.
+    void append(const Table& table);
+    void close();
+
+  private:
+    TableFormat format_;
+    const TakeText& take_;
+    bool empty_ = true;
+};
+
 /// clip,source,class,rate,frames,state,reason
 Table clip_table(const Generation& generation);
 
@@ -36,8 +53,9 @@ Table letter_table(const Generation& generation);
 /// is 1 where the bundle has one member, else 0.
 Table bundle_table(const Generation& generation);
 
-/// clip,frame,neighbour,distance: frames at the source's rate, distance in cm.
-Table neighbor_table(const Generation& generation);
+/// clip,frame,neighbour,distance: frames at the source's rate, distance in cm. Clip by clip, as the
+/// whole may be larger than the memory.
+void write_neighbors(const Generation& generation, TableFormat format, const TakeText& take);
 
 /// clip,first,end,kind,activity_cluster: frames at the source's rate, from 0, end exclusive.
 Table segment_table(const Generation& generation);
@@ -49,7 +67,8 @@ Table primitive_table(const OpenStore& open, const std::filesystem::path& labels
 /// there is none, error (RMS, per marker) of leaves alone.
 Table hierarchy_table(const Generation& generation);
 
-/// WHAT of `export`, by name. Throws UsageError listing what there is.
+/// WHAT of `export`, by name, but for neighbors, graphs and pictures. Throws UsageError listing
+/// what there is.
 Table export_table(const OpenStore& open, std::string_view what,
                    const std::filesystem::path& labels = {});
 
