@@ -218,8 +218,8 @@ Command walk_command() {
             app.add_option("--blend", flags->blend,
                            "label, cluster or bundle: instead of a walk, its motions all at once");
             app.add_option("--weights", flags->weights,
-                           "W,W,… of these motions, in the order of `kinetome export` (default: "
-                           "all alike)")
+                           "W,W,… of these motions, one each, in the order of `kinetome export` "
+                           "(default: all alike)")
                 ->delimiter(',');
             app.add_option(
                 "--body", options.body,

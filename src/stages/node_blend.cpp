@@ -42,12 +42,12 @@ namespace {
 std::vector<double> weights_of(const BlendOptions& options, size_t motions) {
     std::vector<double> weights = options.weights;
     if (weights.empty()) weights.assign(motions, 1);
-    if (weights.size() > motions) {
-        throw UsageError(fmt::format("--weights: {} weights for the {} motions of {} {}",
-                                     weights.size(), motions, options.style.group,
-                                     quote_for_message(options.node)));
+    if (weights.size() != motions) {
+        throw UsageError(fmt::format(
+            "--weights: {} given for the {} motions of {} {}: expected one "
+            "each, 0 for what is left out",
+            weights.size(), motions, options.style.group, quote_for_message(options.node)));
     }
-    weights.resize(motions);
     for (const double weight : weights) {
         if (!(weight >= 0) || !std::isfinite(weight)) {
             throw UsageError(fmt::format("--weights: {} is no weight, 0 or more", weight));

@@ -12,8 +12,7 @@ namespace kinetome {
 
 struct BlendOptions {
     std::string node;                  ///< label or number of a bundle or cluster
-    std::vector<double> weights = {};  ///< of its motions, in order; fewer: the others none; none:
-                                       ///< all alike
+    std::vector<double> weights = {};  ///< of its motions, in order; none: all alike
     bool registered =
         true;               ///< what dynamic time warping finds alike is blended; else equal shares
     std::string body = {};  ///< clip whose skeleton moves; "": that of the heaviest motion
@@ -39,7 +38,7 @@ std::vector<ClipPrimitive> motions_of_node(const std::vector<ClipPrimitive>& pri
 /// All motions of a node at once from beginning to end (blend_motions), registered to the heaviest
 /// one. Clips of other bodies are put on the one that moves, clips of other rates are resampled.
 /// Throws UsageError for a name that no node or several nodes have, for weights that are negative,
-/// all zero or more than there are motions.
+/// all zero or not as many as there are motions.
 NodeBlend blend_node(const std::vector<ClipPrimitive>& primitives, const ClipSource& source,
                      const BlendOptions& options);
 
