@@ -48,7 +48,8 @@ void for_each_edge(const MotionGraph& graph, const Visit& visit) {
 
 std::string write_csv(const StoredGraph& graph) {
     std::string text;
-    append_csv_line(text, {"from_node", "to_node", "from_cluster", "to_cluster", "from_label",
+    const std::string& group = graph.nodes.style.group;
+    append_csv_line(text, {"from_node", "to_node", "from_" + group, "to_" + group, "from_label",
                            "to_label", "clip", "from_first", "from_end", "to_first", "to_end"});
     const auto number = [](int64_t value) { return std::to_string(value); };
     for_each_edge(graph.nodes.graph, [&](int32_t from, int32_t to, const auto& successions) {
@@ -67,18 +68,19 @@ std::string write_csv(const StoredGraph& graph) {
 
 std::string write_json(const StoredGraph& graph) {
     const StrongComponents components = strong_components(graph.nodes.graph);
+    const GraphStyle& style = graph.nodes.style;
     Json nodes = Json::array(), edges = Json::array();
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
-        Json primitives = Json::array();
+        Json pieces = Json::array();
         for (const int32_t piece : graph.nodes.graph.members(node)) {
             const ClipPrimitive& one = primitive_of(graph, piece);
-            primitives.push_back({{"clip", one.clip}, {"first", one.first}, {"end", one.end}});
+            pieces.push_back({{"clip", one.clip}, {"first", one.first}, {"end", one.end}});
         }
         nodes.push_back({{"node", node},
-                         {"cluster", cluster_of(graph, node)},
+                         {style.group, cluster_of(graph, node)},
                          {"label", label_of(graph, node)},
                          {"component", components.component_of[static_cast<size_t>(node)]},
-                         {"primitives", std::move(primitives)}});
+                         {style.piece + "s", std::move(pieces)}});
     }
     for_each_edge(graph.nodes.graph, [&](int32_t from, int32_t to, const auto& successions) {
         edges.push_back({{"from", from}, {"to", to}, {"successions", successions.size()}});
