@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/quote.h"
@@ -28,38 +30,48 @@ MatrixF in_mm_per_marker(const MatrixF& markers) {
     return markers * static_cast<float>(mm_per_cm / std::sqrt(compared));
 }
 
-/// Markers of clips.
+/// Markers of clips. A shard is opened when one of its clips is read first: opening reads all of
+/// it, to verify it. Thread-safe.
 class MarkerShards {
   public:
-    explicit MarkerShards(const Generation& generation) {
-        for (const Receipt* receipt : generation.ledger().of_stage("features")) {
-            shards_.emplace_back(generation.open(receipt->file.file_name));
-        }
-    }
-    /// Of one clip: opening a shard reads all of it, to verify it.
-    MarkerShards(const Generation& generation, const std::string& clip) {
-        const auto& clips = generation.catalog().clips;
-        const auto place = std::ranges::find(clips, clip, &CatalogClip::name);
-        for (const Receipt* receipt : generation.ledger().of_stage("features")) {
-            if (place != clips.end() && receipt->shard == place->shard) {
-                shards_.emplace_back(generation.open(receipt->file.file_name));
-            }
-        }
-    }
+    /// `generation` outlives it.
+    explicit MarkerShards(const Generation& generation) : generation_(generation) {}
 
     MatrixF read(const std::string& clip, const RowRange& frames) const {
-        for (const FeatureShardReader& shard : shards_) {
+        const auto& clips = generation_.catalog().clips;
+        const auto known = std::ranges::lower_bound(clips, clip, {}, &CatalogClip::name);
+        if (known != clips.end() && known->name == clip) {
+            const FeatureShardReader& shard = shard_of(*known);
             const auto place = std::ranges::find(shard.clips(), clip, &FeatureShardClip::name);
-            if (place == shard.clips().end()) continue;
-            return shard.markers(place->clip_class, place->first_pose_row + frames.first,
-                                 frames.size());
+            if (place != shard.clips().end()) {
+                return shard.markers(place->clip_class, place->first_pose_row + frames.first,
+                                     frames.size());
+            }
         }
         throw StoreError(
             fmt::format("the markers of clip {} are not in the store", quote_for_message(clip)));
     }
 
   private:
-    std::vector<FeatureShardReader> shards_;
+    const FeatureShardReader& shard_of(const CatalogClip& clip) const {
+        const std::scoped_lock one_opens(opening_);
+        auto shard = shards_.find(clip.shard);
+        if (shard == shards_.end()) {
+            const auto made = generation_.made_by("features");
+            const auto file = std::ranges::find(made, clip.shard, &Receipt::shard);
+            if (file == made.end()) {
+                throw StoreError(fmt::format("the features of shard {} are not in the store",
+                                             quote_for_message(clip.shard)));
+            }
+            FeatureShardReader opened(generation_.open((*file)->file.file_name));
+            shard = shards_.emplace(clip.shard, std::move(opened)).first;
+        }
+        return shard->second;
+    }
+
+    const Generation& generation_;
+    mutable std::mutex opening_;
+    mutable std::map<std::string, FeatureShardReader> shards_;  ///< by cut name
 };
 
 /// Source frames as frames at the pose rate, at least one.
@@ -99,7 +111,7 @@ Asked asked_clip(const Generation& generation, const SignatureQuery& query) {
         const auto number = static_cast<int32_t>(clip - signatures.clips.begin());
         const RowRange frames = at_pose_rate(asked_frames(query, clip->source_frames),
                                              clip->source_rate, signatures.pose_rate, clip->frames);
-        MatrixF markers = MarkerShards(generation, query.clip).read(query.clip, frames);
+        MatrixF markers = MarkerShards(generation).read(query.clip, frames);
         PlacedSignature signature = place_signature(
             part_of(signatures.index.signature(number), frames), markers, signatures.axes, 1);
         return {std::move(signatures), std::move(signature), std::move(markers)};
