@@ -5,50 +5,16 @@
 #include <string_view>
 #include <utility>
 
+#include "group_writer.h"
+
 namespace kinetome {
 namespace {
-
-/// Datasets of one class.
-class GroupWriter {
-  public:
-    GroupWriter(ArtifactWriter& file, std::string group) : file_(file), group_(std::move(group)) {}
-
-    template <class T>
-    void values(const char* name, const char* units, const char* description, const char* source,
-                const std::vector<T>& values) {
-        file_.write<T>(spec(name, element_type_of<T>(), {}, units, description, source), values);
-    }
-    void values(const char* name, const char* units, const char* description, const char* source,
-                const VectorD& vector) {
-        values(name, units, description, source, std::vector<double>(vector.begin(), vector.end()));
-    }
-    /// Rows of some shape; nothing where a row has no values.
-    void rows(const char* name, const char* units, const char* description, const char* source,
-              std::vector<int64_t> shape, std::span<const double> values) {
-        const DatasetSpec dataset =
-            spec(name, ElementType::float64, std::move(shape), units, description, source);
-        if (dataset.values_per_row() > 0) file_.write<double>(dataset, values);
-    }
-    void texts(const char* name, const char* description, const char* source,
-               const std::vector<std::string>& texts) {
-        file_.write_texts(spec(name, ElementType::text, {}, "1", description, source), texts);
-    }
-
-  private:
-    DatasetSpec spec(const char* name, ElementType type, std::vector<int64_t> shape,
-                     const char* units, const char* description, const char* source) const {
-        return {group_ + "/" + name, type, std::move(shape), units, description, source, "", {}};
-    }
-
-    ArtifactWriter& file_;
-    std::string group_;
-};
 
 std::span<const double> values_of(const MatrixD& matrix) {
     return {matrix.data(), static_cast<size_t>(matrix.size())};
 }
 
-void write_principal(GroupWriter& out, const ClassHierarchy& model) {
+void write_principal(const GroupWriter& out, const ClassHierarchy& model) {
     const PrincipalMarkers& principal = model.principal;
     out.texts("markers/name", "marker names, three columns each", "S2 §3", model.marker_names);
     out.values("principal/markers", "1", "principal markers, by number", "S2 §3",
@@ -64,7 +30,7 @@ void write_principal(GroupWriter& out, const ClassHierarchy& model) {
                std::vector<double>{principal.residual});
 }
 
-void write_nodes(GroupWriter& out, const PoseHierarchy& hierarchy) {
+void write_nodes(const GroupWriter& out, const PoseHierarchy& hierarchy) {
     const auto column = [&](auto HierarchyNode::*member) {
         std::vector<std::decay_t<decltype(HierarchyNode{}.*member)>> values;
         for (const HierarchyNode& node : hierarchy.nodes) values.push_back(node.*member);
@@ -88,7 +54,7 @@ void write_nodes(GroupWriter& out, const PoseHierarchy& hierarchy) {
              {hierarchy.normals.cols()}, values_of(hierarchy.normals));
 }
 
-void write_leaves(GroupWriter& out, const PoseHierarchy& hierarchy, const MarkerMaps& maps) {
+void write_leaves(const GroupWriter& out, const PoseHierarchy& hierarchy, const MarkerMaps& maps) {
     out.rows("leaves/mean", "cm", "mean pose of each leaf", "S2 §5.1", {hierarchy.columns()},
              values_of(hierarchy.means));
     out.rows("leaves/basis", "1", "principal components of each leaf, one a column", "S2 §5.1",
@@ -166,7 +132,7 @@ MarkerMaps read_maps(const ArtifactReader& file, const std::string& group,
 
 void write_pose_hierarchy(ArtifactWriter& file, const std::string& group,
                           const ClassHierarchy& model) {
-    GroupWriter out(file, group);
+    const GroupWriter out(file, group);
     write_principal(out, model);
     write_nodes(out, model.hierarchy);
     write_leaves(out, model.hierarchy, model.maps);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "group_writer.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/resample.h"
@@ -17,38 +18,6 @@ namespace {
 
 const std::string rate_path = "/pose_rate";
 const std::string samples_path = "/samples/position";
-
-/// Datasets of one class.
-class GroupWriter {
-  public:
-    GroupWriter(ArtifactWriter& file, std::string group) : file_(file), group_(std::move(group)) {}
-
-    template <class T>
-    void write(const char* name, const char* units, const char* description, const char* source,
-               const std::vector<T>& values) const {
-        file_.write<T>(spec(name, element_type_of<T>(), units, description, source), values);
-    }
-    void write_texts(const char* name, const char* description,
-                     const std::vector<std::string>& values) const {
-        file_.write_texts(spec(name, ElementType::text, "1", description, ""), values);
-    }
-    void write_rows(const char* name, const char* units, const char* description,
-                    const char* source, const MatrixF& rows) const {
-        DatasetSpec with_shape = spec(name, ElementType::float32, units, description, source);
-        with_shape.row_shape = {rows.cols()};
-        file_.create(with_shape);
-        file_.append(with_shape.path, rows);
-    }
-
-  private:
-    DatasetSpec spec(const char* name, ElementType type, const char* units, const char* description,
-                     const char* source) const {
-        return {group_ + "/" + name, type, {}, units, description, source, "", {}};
-    }
-
-    ArtifactWriter& file_;
-    std::string group_;
-};
 
 template <class Value>
 std::vector<int64_t> lengths_of(const ValueLists<Value>& lists) {
@@ -76,16 +45,16 @@ std::vector<Member> column(const std::vector<Value>& values, Member Value::*memb
 void write_clips(const GroupWriter& out, const ClassSignatures& signatures) {
     std::vector<int64_t> ids;
     for (const SignatureClip& clip : signatures.clips) ids.push_back(clip_id(clip.name));
-    out.write<int64_t>("clips/id", "1", "clip id", "", ids);
-    out.write_texts("clips/name", "clip name", column(signatures.clips, &SignatureClip::name));
-    out.write<int64_t>("clips/frames", "frames", "frames at the pose rate", "",
-                       column(signatures.clips, &SignatureClip::frames));
-    out.write<int64_t>("clips/source_frames", "frames", "frames of the source", "",
-                       column(signatures.clips, &SignatureClip::source_frames));
-    out.write<double>("clips/source_rate", "frames/s", "frame rate of the source", "",
-                      column(signatures.clips, &SignatureClip::source_rate));
-    out.write<int64_t>("clips/runs", "1", "runs of the clip's signature", "S2 §5.3",
-                       lengths_of(signatures.index.parts().clips));
+    out.values<int64_t>("clips/id", "1", "clip id", "", ids);
+    out.texts("clips/name", "clip name", "", column(signatures.clips, &SignatureClip::name));
+    out.values<int64_t>("clips/frames", "frames", "frames at the pose rate", "",
+                        column(signatures.clips, &SignatureClip::frames));
+    out.values<int64_t>("clips/source_frames", "frames", "frames of the source", "",
+                        column(signatures.clips, &SignatureClip::source_frames));
+    out.values<double>("clips/source_rate", "frames/s", "frame rate of the source", "",
+                       column(signatures.clips, &SignatureClip::source_rate));
+    out.values<int64_t>("clips/runs", "1", "runs of the clip's signature", "S2 §5.3",
+                        lengths_of(signatures.index.parts().clips));
 }
 
 std::vector<SignatureClip> read_clips(const ArtifactReader& file, const std::string& group) {
@@ -139,36 +108,34 @@ void write_signatures(ArtifactWriter& file, const std::string& group,
     const auto& runs = parts.clips.values;
     const auto& near = parts.near_leaves.values;
     const GroupWriter out(file, group);
-    out.write<double>("pose_rate", "frames/s", "rate that frames count at", "",
-                      {signatures.pose_rate});
-    out.write_rows("axes", "mm/cm", "what poses are multiplied by for positions", "",
-                   signatures.axes);
+    out.values<double>("pose_rate", "frames/s", "rate that frames count at", "",
+                       {signatures.pose_rate});
+    out.rows("axes", "mm/cm", "what poses are multiplied by for positions", "", signatures.axes);
     write_clips(out, signatures);
-    out.write<int32_t>("runs/leaf", "1", "leaf of the pose hierarchy, clip after clip", "S2 §5.3",
-                       column(runs, &SignatureRun::leaf));
-    out.write<int32_t>("runs/first_frame", "frames", "first frame of the run in its clip",
-                       "S2 §5.3", column(runs, &SignatureRun::first_frame));
-    out.write<int32_t>("runs/frames", "frames", "frames of the run", "S2 §5.3",
-                       column(runs, &SignatureRun::frames));
-    out.write_rows("runs/position", "mm",
-                   "Euclidean distances are those between mean poses, per marker", "",
-                   parts.positions);
-    out.write<int32_t>("samples/stride", "frames", "from one sample of a clip to the next", "",
-                       {parts.stride});
-    out.write_rows("samples/position", "mm", "likewise of poses, clip after clip", "",
-                   parts.sample_positions);
-    out.write<int64_t>("leaves/occurrences", "1", "runs of the leaf", "S2 §5.3",
-                       lengths_of(parts.occurrences));
-    out.write<int32_t>("occurrences/run", "1", "rows of runs, leaf after leaf", "S2 §5.3",
-                       parts.occurrences.values);
-    out.write<int64_t>("leaves/near_leaves", "1", "leaves listed as near to it", "",
-                       lengths_of(parts.near_leaves));
-    out.write<int32_t>("near_leaves/leaf", "1", "leaves near each leaf, nearest first", "",
-                       column(near, &NearLeaf::leaf));
-    out.write<float>("near_leaves/distance", "mm", "from the leaf, per marker", "",
-                     column(near, &NearLeaf::distance));
-    out.write<double>("reach", "mm", "leaves farther apart are not near, per marker", "",
-                      {parts.reach});
+    out.values<int32_t>("runs/leaf", "1", "leaf of the pose hierarchy, clip after clip", "S2 §5.3",
+                        column(runs, &SignatureRun::leaf));
+    out.values<int32_t>("runs/first_frame", "frames", "first frame of the run in its clip",
+                        "S2 §5.3", column(runs, &SignatureRun::first_frame));
+    out.values<int32_t>("runs/frames", "frames", "frames of the run", "S2 §5.3",
+                        column(runs, &SignatureRun::frames));
+    out.rows("runs/position", "mm", "Euclidean distances are those between mean poses, per marker",
+             "", parts.positions);
+    out.values<int32_t>("samples/stride", "frames", "from one sample of a clip to the next", "",
+                        {parts.stride});
+    out.rows("samples/position", "mm", "likewise of poses, clip after clip", "",
+             parts.sample_positions);
+    out.values<int64_t>("leaves/occurrences", "1", "runs of the leaf", "S2 §5.3",
+                        lengths_of(parts.occurrences));
+    out.values<int32_t>("occurrences/run", "1", "rows of runs, leaf after leaf", "S2 §5.3",
+                        parts.occurrences.values);
+    out.values<int64_t>("leaves/near_leaves", "1", "leaves listed as near to it", "",
+                        lengths_of(parts.near_leaves));
+    out.values<int32_t>("near_leaves/leaf", "1", "leaves near each leaf, nearest first", "",
+                        column(near, &NearLeaf::leaf));
+    out.values<float>("near_leaves/distance", "mm", "from the leaf, per marker", "",
+                      column(near, &NearLeaf::distance));
+    out.values<double>("reach", "mm", "leaves farther apart are not near, per marker", "",
+                       {parts.reach});
 }
 
 ClassSignatures read_signatures(const ArtifactReader& file, const std::string& group) {
