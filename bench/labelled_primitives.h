@@ -15,8 +15,8 @@
 #include "kinetome/models/primitive.h"
 #include "kinetome/stages/stored_labels.h"
 #include "kinetome/synthesis/corpus_generator.h"
+#include "support/temporary_folder.h"
 #include "takes.h"
-#include "temporary_folder.h"
 
 namespace kinetome::bench {
 

@@ -19,6 +19,16 @@ constexpr bool is_list = false;
 template <class Entry>
 constexpr bool is_list<std::vector<Entry>> = true;
 
+/// CLI11's own check tells the largest double, digit by digit.
+CLI::Validator positive() {
+    return {[](const std::string& text) {
+                double number = 0;
+                const bool is_positive = CLI::detail::lexical_cast(text, number) && number > 0;
+                return is_positive ? std::string() : "expected a number above 0, found " + text;
+            },
+            ""};
+}
+
 }  // namespace
 
 Program::Program(const std::string& question) : app_(std::make_unique<CLI::App>(question)) {
@@ -40,7 +50,7 @@ void Program::option(const std::string& name, Value& value, const std::string& w
 
 template <class Number>
 void Program::count(const std::string& name, Number& value, const std::string& what) {
-    app_->add_option(name, value, what)->check(CLI::PositiveNumber);
+    app_->add_option(name, value, what)->check(positive());
 }
 
 void Program::choice(const std::string& name, std::string& value, std::vector<std::string> choices,

@@ -38,7 +38,7 @@
 #include "kinetome/store/neighbor_store.h"
 #include "kinetome/synthesis/corpus_generator.h"
 #include "program.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace {
 
@@ -263,7 +263,7 @@ enum StageNumber : size_t {
 
 Rates measure(const Options& options) {
     const Resources resources = granted_resources(options.threads, std::nullopt);
-    const bench::TemporaryFolder folder;
+    const TemporaryFolder folder;
     generate_corpus({.frames = options.frames}, folder / "takes", resources.threads);
     generate_corpus({.frames = 100, .subjects = 1}, folder / "take", resources.threads);
 
