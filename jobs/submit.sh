@@ -4,6 +4,7 @@
 #
 #   --nodes N            nodes of the MPI job (default: Slurm's choice)
 #   --ranks N            ranks of the MPI job (default: as `kinetome plan` advises)
+#   --time LIMIT         time limit of each job, as sbatch has it (default: as `kinetome plan` advises)
 #   --account A, --partition P, --constraint C    as sbatch has them, for all jobs
 #   --max-requeues N     how often a job that was interrupted begins anew (default: 5)
 #   --node-scratch DIR   folder on every node's own disk where files are written first
@@ -33,7 +34,7 @@ find_kinetome() {
 
 # --- arguments
 paths=() common=() mpi=() stage=() options=()
-ranks='' nodes='' max_requeues=5 wait=false
+ranks='' nodes='' time='' max_requeues=5 wait=false
 while (($#)); do
   case $1 in
     -h | --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
@@ -45,6 +46,7 @@ while (($#)); do
   case $1 in
     --nodes) nodes=$2 ;;
     --ranks) ranks=$2 ;;
+    --time) time=$2 ;;
     --max-requeues) max_requeues=$2 ;;
     --account | --partition | --constraint) common+=("$1=$2") ;;
     --node-scratch) stage+=(--node-scratch "$2") ;;
@@ -95,15 +97,15 @@ submit() { # NAME LOG SBATCH-ARGUMENT ...: sets the variable NAME to the job's i
   printf -v "$name" %s "$id"
 }
 submit ingest ingest-%A_%a.log --array="1-${need[ingest_tasks]}" --cpus-per-task="${need[ingest_threads]}" \
-  --mem="${need[ingest_memory_mb]}" --time="${need[ingest_time]}" \
+  --mem="${need[ingest_memory_mb]}" --time="${time:-${need[ingest_time]}}" \
   "$jobs/ingest_array.sbatch" "$jobs" "$kinetome" "$max_requeues" "${need[ingest_tasks]}" \
   "$corpus" "$store" "${stage[@]}"
 submit reindex reindex-%j.log --dependency="afterok:$ingest" --ntasks="$ranks" "${mpi[@]}" \
   --cpus-per-task="${need[threads]}" --mem-per-cpu=$(((need[memory_mb] + need[threads] - 1) / need[threads])) \
-  --time="${need[time]}" \
+  --time="${time:-${need[time]}}" \
   "$jobs/reindex.sbatch" "$jobs" "$kinetome" "$max_requeues" "$corpus" "$store" "${stage[@]}"
 submit publish publish-%j.log --dependency="afterok:$reindex" --cpus-per-task="${need[ingest_threads]}" \
-  --mem="${need[ingest_memory_mb]}" --time="${need[time]}" \
+  --mem="${need[ingest_memory_mb]}" --time="${time:-${need[time]}}" \
   "$jobs/publish.sbatch" "$kinetome" "$store"
 
 printf '%s\n' "${need[frames]} frames, ${need[disk_mb]} MiB of disk at most" \

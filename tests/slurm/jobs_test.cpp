@@ -192,8 +192,11 @@ TEST_CASE("a job that is cancelled stays cancelled, and submitting again goes on
 TEST_CASE("a job that is interrupted more often than is allowed fails clearly", "[slurm]") {
     if (!SlurmCluster::find()) return;
     const SlowCorpus corpus;
-    const JobChain chain = corpus.submit({"--max-requeues", "1"});
+    const JobChain chain = corpus.submit({"--max-requeues", "1", "--time", "7"});
     const std::string name = "reindex-" + chain.reindex;
+    for (const std::string& job : {chain.ingest, chain.reindex, chain.publish}) {
+        CHECK(ask({"squeue", "-h", "-t", "all", "-j", job, "-o", "%l"}).starts_with("7:00"));
+    }
     corpus.wait_for_checkpoint();
     for (const char* start : {"start 1", "start 2"}) {
         wait_until([&] {
