@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "clip_list.h"
 #include "command.h"
 #include "frame_range.h"
 #include "kinetome/base/file.h"
@@ -30,7 +31,7 @@ void print_last_line(const CompressedHead& head, const CompressedSize& size) {
 
 ExitCode compress(const CompressFlags& flags) {
     const OpenStore open(flags.store, flags.generation);
-    std::vector<std::string> clips = flags.clips;
+    std::vector<std::string> clips = listed_clips(flags.clips, open.generation.catalog());
     if (clips.empty()) {
         for (const CatalogClip& clip : open.generation.catalog().clips) {
             if (clip.indexed()) clips.push_back(clip.name);
@@ -75,8 +76,7 @@ Command compress_command() {
                 auto flags = std::make_shared<CompressFlags>();
                 app.add_option("STORE", flags->store, "store to read")->required();
                 app.add_option("--clip", flags->clips,
-                               "clips to compress, separated by commas (default: all)")
-                    ->delimiter(',');
+                               "clips to compress, separated by commas (default: all)");
                 app.add_option("-o,--output", flags->output, "file to write")->required();
                 app.add_option("--generation", flags->generation,
                                "id, the beginning of one, or current");

@@ -18,6 +18,7 @@
 #include "kinetome/stages/bundle_compression.h"
 #include "kinetome/stages/evaluation.h"
 #include "kinetome/stages/hierarchy_evaluation.h"
+#include "kinetome/stages/label_rows.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/primitive_evaluation.h"
 #include "kinetome/stages/stored_bundles.h"
@@ -140,6 +141,17 @@ class EvaluationInput {
         return rows;
     }
 
+    /// Where no timelines are made of it, which do not let a row fall by the way either.
+    std::vector<TruthRow> truth_of_store() const {
+        const std::vector<TruthRow> rows = truth();
+        std::vector<CycleRow> spans;
+        for (const TruthRow& row : rows) {
+            spans.push_back({row.clip, row.first, row.end, row.label, row.line});
+        }
+        require_fitting_rows(spans, generation().catalog(), flags_.truth.string());
+        return rows;
+    }
+
     std::vector<CycleRow> cycles() const {
         if (flags_.cycles.empty()) return {};
         return parse_cycles_csv(read_source_file(flags_.cycles), flags_.cycles.string());
@@ -190,13 +202,21 @@ std::string picture_name(const std::string& clip, std::set<std::string>& taken) 
     return free + ".svg";
 }
 
+/// Made if only it is missing; the folder that it lies in is there, as that of any other output.
+void require_folder(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error) && !fs::create_directory(folder, error)) {
+        throw create_error("create", folder, error ? error.value() : EEXIST);
+    }
+}
+
 using SegmentsByClip = std::map<std::string, std::vector<Segment>>;
 
 void draw(const std::vector<AnnotatedTake>& takes, const std::vector<PrimitivesOfTake>& primitives,
           const SegmentsByClip& peer, const fs::path& folder) {
     std::map<std::string, std::vector<RowRange>> primitives_of;
     for (const PrimitivesOfTake& take : primitives) primitives_of[take.clip] = take.primitives;
-    fs::create_directories(folder);
+    require_folder(folder);
     std::set<std::string> taken;
     for (const auto& [take, truth] : takes) {
         Timeline timeline{take.clip, truth.frames(), take.rate, {truth_row(truth)}, truth.classes};
@@ -247,7 +267,7 @@ std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
     if (is_about_hierarchy(flags)) {
         table = hierarchy_table(flags, input.generation(), workers);
     } else if (flags.what == "bundles") {
-        table = bundle_score_table(stored_bundle_score(input.generation(), input.truth()));
+        table = bundle_score_table(stored_bundle_score(input.generation(), input.truth_of_store()));
         append_compression(stored_bundle_compression(input.generation()), table);
     } else if (flags.what == "recurrence") {
         table = recurrence_table(stored_recurrence(input.generation()));

@@ -5,10 +5,11 @@
 #include <memory>
 
 #include "checks.h"
+#include "clip_list.h"
 #include "command.h"
 #include "kinetome/base/error.h"
-#include "kinetome/base/file.h"
 #include "kinetome/base/quote.h"
+#include "kinetome/stages/label_rows.h"
 #include "kinetome/stages/open_store.h"
 #include "kinetome/stages/stored_labels.h"
 #include "write_text.h"
@@ -23,21 +24,33 @@ struct LabelFlags {
     std::string format = "csv", generation = "current";
 };
 
-std::vector<CycleRow> read_labels(const std::filesystem::path& file) {
-    return parse_labels_csv(read_source_file(file), file.string());
+/// What becomes of the labels: a table, and a line that sums it up.
+struct LabelAnswer {
+    Table table;
+    std::string summary = {};
+};
+
+std::string summary_of(const TransferredLabels& labels) {
+    const auto known = std::ranges::count(labels.is_known, true);
+    const auto transferred = std::ranges::count_if(
+        labels.guesses, [](const LabelGuess& guess) { return guess.label >= 0; });
+    const auto all = std::ssize(labels.primitives);
+    return fmt::format("{} primitives: {} with a label, {} were given one, {} have none\n", all,
+                       known, transferred, all - known - transferred);
 }
 
-Table make_table(const LabelFlags& flags, int threads) {
+LabelAnswer answer(const LabelFlags& flags, int threads) {
     if (!flags.known_takes.empty() && (flags.truth.empty() || !flags.from.empty()))
         throw UsageError("--known-takes: expected beside --truth, without --from");
     const OpenStore open(flags.store, flags.generation);
+    const Catalog& catalog = open.generation.catalog();
     std::vector<ClipPrimitive> primitives = stored_primitives(open, flags.from);
     const PrimitiveFeatures features = read_primitive_features(open.generation);
     const bool any_known = std::any_of(primitives.begin(), primitives.end(),
                                        [](const auto& one) { return !one.label.empty(); });
     if (!flags.truth.empty() && !any_known) {
-        return label_tables(features, primitives, read_labels(flags.truth), flags.known_takes,
-                            flags.transfer, threads);
+        return {label_tables(features, primitives, read_label_rows(flags.truth, catalog),
+                             listed_clips(flags.known_takes, catalog), flags.transfer, threads)};
     }
     if (!any_known && !flags.from.empty()) {
         throw Error(ExitCode::nothing_usable,
@@ -55,7 +68,8 @@ Table make_table(const LabelFlags& flags, int threads) {
     }
     const TransferredLabels labels =
         transfer_labels(features, std::move(primitives), flags.transfer, threads);
-    return flags.truth.empty() ? label_rows(labels) : label_score(labels, read_labels(flags.truth));
+    if (flags.truth.empty()) return {label_rows(labels), summary_of(labels)};
+    return {label_score(labels, read_label_rows(flags.truth, catalog))};
 }
 
 }  // namespace
@@ -73,8 +87,7 @@ Command label_command() {
                                "transferring from all other annotated takes to each");
                 app.add_option("--known-takes", flags->known_takes,
                                "with --truth alone: also from the first of these takes, the first "
-                               "two, …, separated by commas")
-                    ->delimiter(',');
+                               "two, …, separated by commas");
                 app.add_option("--threshold", flags->transfer.threshold,
                                "mean distance along a path to a label, cm, at most")
                     ->check(above_zero())
@@ -96,9 +109,9 @@ Command label_command() {
                                "id, the beginning of one, or current");
                 return [=](const Invocation& invocation) {
                     const TableFormat format = parse_table_format(flags->format);
-                    const std::string text =
-                        write_table(make_table(*flags, invocation.resources().threads), format);
-                    write_text(flags->output, text);
+                    const LabelAnswer given = answer(*flags, invocation.resources().threads);
+                    write_text(flags->output, write_table(given.table, format));
+                    if (!flags->output.empty()) fmt::print("{}", given.summary);
                     return ExitCode::success;
                 };
             }};

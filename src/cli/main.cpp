@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.h"
@@ -58,10 +60,22 @@ std::vector<Command> all_commands() {
             reading(evaluate_command())};
 }
 
-/// All ranks refuse alike; rank 0 says why.
-ExitCode refuse(const std::string& message, const Communicator& ranks) {
-    if (ranks.is_root()) fmt::print(stderr, "kinetome: {}\n", message);
-    return ExitCode::usage;
+/// Whether --log-format json is among the words, which may be no command line.
+bool asks_for_json(std::span<char* const> words) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string_view word = words[i], next = i + 1 < words.size() ? words[i + 1] : "";
+        if (word == "--log-format=json" || (word == "--log-format" && next == "json")) return true;
+    }
+    return false;
+}
+
+/// Why no command could begin.
+void tell(std::span<char* const> words, const std::string& message) {
+    if (asks_for_json(words)) {
+        Log({.format = LogFormat::json}).error("{}", message);
+    } else {
+        fmt::print(stderr, "kinetome: {}\n", message);
+    }
 }
 
 /// Where two ranks were given different command lines; empty when none were.
@@ -79,9 +93,14 @@ std::string different_command_lines(const std::string& mine, Communicator& ranks
 
 ExitCode run_main(int argc, char** argv, const Launch& launch, StopToken stop,
                   Communicator& ranks) {
+    /// All ranks refuse alike; rank 0 says why.
+    const auto refuse = [&](const std::string& message) {
+        if (ranks.is_root()) tell({argv, static_cast<size_t>(argc)}, message);
+        return ExitCode::usage;
+    };
     const std::string again = command_line(argc, argv);
     const std::string difference = different_command_lines(again, ranks);
-    if (!difference.empty()) return refuse(difference, ranks);
+    if (!difference.empty()) return refuse(difference);
 
     CLI::App app("Kinetome turns a folder of motion-capture takes into an index.", "kinetome");
     app.set_version_flag("--version", std::string("kinetome ") + KINETOME_VERSION);
@@ -111,11 +130,9 @@ ExitCode run_main(int argc, char** argv, const Launch& launch, StopToken stop,
         return refuse(
             (known || first.starts_with('-') ? error.what()
                                              : "no command is called " + quote_for_message(first)) +
-                "\nkinetome --help lists the commands, kinetome <command> --help its "
-                "options.",
-            ranks);
+            "\nkinetome --help lists the commands, kinetome <command> --help its options.");
     } catch (const UsageError& error) {
-        return refuse(error.what(), ranks);
+        return refuse(error.what());
     }
     for (const auto& [sub, command] : choices) {
         if (sub->parsed()) return run_command(command, common, launch, stop, ranks);
@@ -132,7 +149,7 @@ int start(int argc, char** argv) {
         const auto ranks = start_ranks(launch);
         return static_cast<int>(run_main(argc, argv, launch, stop, *ranks));
     } catch (const Error& error) {
-        fmt::print(stderr, "kinetome: {}\n", error.what());
+        tell({argv, static_cast<size_t>(argc)}, error.what());
         return static_cast<int>(error.exit_code());
     }
 }

@@ -2,8 +2,7 @@
 #include <map>
 #include <memory>
 
-#include "kinetome/base/error.h"
-#include "kinetome/base/file.h"
+#include "kinetome/stages/label_rows.h"
 #include "kinetome/stages/segment_file.h"
 #include "kinetome/stages/stored_clips.h"
 #include "kinetome/stages/stored_graph.h"
@@ -31,20 +30,17 @@ void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<
 
 void label_from_table(std::vector<ClipPrimitive>& primitives, const OpenStore& open,
                       const std::filesystem::path& labels) {
+    const Catalog& catalog = open.generation.catalog();
     const std::filesystem::path own = open.store.path() / "labels.csv";
-    const std::filesystem::path& table = labels.empty() ? own : labels;
-    if (!labels.empty() || std::filesystem::exists(own)) {
-        label_primitives(primitives, parse_labels_csv(read_source_file(table), table.string()));
+    if (!labels.empty()) {
+        label_primitives(primitives, read_label_rows(labels, catalog));
+    } else if (std::filesystem::exists(own)) {  // it outlives the takes of one generation
+        label_primitives(primitives, read_label_rows(own, catalog, UnknownClips::passed_over));
     }
 }
 
 std::vector<ClipPrimitive> stored_primitives(const OpenStore& open,
                                              const std::filesystem::path& labels) {
-    if (!open.generation.ledger().find("primitives.h5")) {
-        throw UsageError(
-            "the store has no primitives yet; kinetome reindex CORPUS --store STORE "
-            "makes them");
-    }
     const ArtifactReader file = open.generation.open("primitives.h5");
     const double rate = effector_rate_of(file);
     std::vector<ClipPrimitive> primitives;

@@ -192,7 +192,6 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
             "walk", store.path,  "--graph", "bundles", "--blend",
             name,   "--weights", weights,   "-o",      store.output("b.bvh")};
     };
-    const auto blend = [&](const std::string& weights) { return blend_of(largest, weights); };
     std::vector<int64_t> lengths;
     for (const std::string& row : rows) {
         if (!row.starts_with(largest + ",")) continue;
@@ -202,14 +201,19 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
         cells >> first_frame >> comma >> end_frame;
         lengths.push_back(end_frame - first_frame);
     }
-    REQUIRE(lengths.size() > 1);
+    REQUIRE(lengths.size() > 2);
+    const auto blend = [&](std::string weights) {
+        for (size_t given = 2; given < lengths.size(); ++given) weights += ",0";
+        return blend_of(largest, weights);
+    };
     CHECK(contains(require_program(walk({"--blend", largest}), usage).errors, "--seconds"));
-    CHECK(contains(require_program(blend("1")).output,
+    CHECK(contains(require_program(blend("1,0")).output,
                    "motion        " + std::to_string(lengths[0]) + " frames"));
     const auto mean = std::llround(double(lengths[0] + 2 * lengths[1]) / 3);
     CHECK(contains(require_program(blend("1,2")).output,
                    "motion        " + std::to_string(mean) + " frames"));
     CHECK(contains(require_program(blend("0,0"), usage).errors, "one of them must be above 0"));
+    CHECK(contains(require_program(blend_of(largest, "1,1"), usage).errors, "expected one each"));
     CHECK(contains(require_program(blend("1,-1"), usage).errors, "is no weight"));
     CHECK(contains(require_program(blend_of("swimming", "1"), usage).errors,
                    "no bundle has this label or number"));
@@ -294,7 +298,7 @@ std::vector<std::pair<std::string, std::string>> linked_bundles(const std::strin
     const kinetome::Json graph = kinetome::Json::parse(
         require_program({"export", store, "bundle-graph", "--format", "json"}).output);
     const auto bundle = [&](const kinetome::Json& node) {
-        return std::to_string(graph["nodes"][node.get<size_t>()]["cluster"].get<int>());
+        return std::to_string(graph["nodes"][node.get<size_t>()]["bundle"].get<int>());
     };
     std::vector<std::pair<std::string, std::string>> pairs;
     for (const kinetome::Json& link : graph["links"])
@@ -328,29 +332,6 @@ TEST_CASE("the same holds of walks through the bundles of real takes", "[walk][c
     require_program({"reindex", (folder / "takes").string(), "--store", store, "--only",
                      "frames,features,pose_clusters,motion_strings,bundles,bundle_graph"});
     check_quality(store, "bundles", (folder / "w.bvh").string());
-}
-
-TEST_CASE("a store without bundles says what makes them", "[walk]") {
-    const TemporaryFolder folder;
-    generate_corpus(folder / "takes", 2400, 1);
-    const std::string store = (folder / "store").string();
-    require_program(reindex(folder / "takes", store, {"--only", "frames"}));
-    const std::string output = (folder / "walk.bvh").string();
-    CHECK(
-        contains(require_program({"walk", store, "--graph", "bundles", "-o", output}, usage).errors,
-                 "no motion bundles yet; kinetome reindex"));
-}
-
-TEST_CASE("a store without primitives says what makes them", "[walk]") {
-    const TemporaryFolder folder;
-    generate_corpus(folder / "takes", 2400, 1);
-    const std::string store = (folder / "store").string();
-    require_program(reindex(folder / "takes", store, {"--only", "frames"}));
-    const std::string output = (folder / "walk.bvh").string();
-    CHECK(contains(require_program({"walk", store, "-o", output}, usage).errors,
-                   "no primitives yet; kinetome reindex"));
-    CHECK(contains(require_program({"export", store, "primitive-graph"}, usage).errors,
-                   "no primitives yet; kinetome reindex"));
 }
 
 TEST_CASE("a walk leads from the bundles of one body to those of another", "[walk]") {

@@ -61,8 +61,9 @@ void link_clusters(StoredGraph& graph, const std::vector<ClusterLink>& links);
 /// the sources.
 void label_primitives(std::vector<ClipPrimitive>& primitives, const std::vector<CycleRow>& labels);
 
-/// Labels of a table (parse_labels_csv): that of the file, or the store's labels.csv where there is
-/// one. Throws InputError for a table that cannot be read.
+/// Labels of a table (read_label_rows): that of the file, or the store's labels.csv where there is
+/// one, which may speak of clips that the store has no more. Throws InputError for a table that
+/// cannot be read or does not fit.
 void label_from_table(std::vector<ClipPrimitive>& primitives, const OpenStore& open,
                       const std::filesystem::path& labels);
 
@@ -82,7 +83,8 @@ GraphFormat parse_graph_format(std::string_view name);
 /// primitives, `from_node,to_node,from_cluster,to_cluster,from_label,to_label,clip,from_first,
 /// from_end,to_first,to_end`; JSON: nodes with their primitives and strong components, edges with
 /// their numbers of successions, links of nodes; DOT: the same for Graphviz, links dashed; SVG: a
-/// picture (graph_svg). Frames at the sources' rates.
+/// picture (graph_svg). Clusters and primitives are called as the graph's style has it. Frames at
+/// the sources' rates.
 std::string write_graph(const StoredGraph& graph, GraphFormat format);
 
 }  // namespace kinetome
