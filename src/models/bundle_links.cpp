@@ -10,15 +10,16 @@
 #include "disjoint_sets.h"
 #include "kinetome/base/parallel.h"
 #include "member_agreement.h"
+#include "member_metric.h"
 
 namespace kinetome {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-RowRange grown(const RowRange& range, int64_t by, const RowRange& within) {
-    return {std::max(within.first, range.first - by), std::min(within.end, range.end + by)};
-}
+/// What moves wholly unlike may be as far apart as members of one bundle usually are; what moves
+/// more alike, farther in proportion.
+constexpr double farthest = 1;
 
 void check(const MatrixFView& rows, std::span<const RowRange> clips,
            std::span<const BundleMember> members, std::span<const int32_t> subject_of,
@@ -39,8 +40,7 @@ void check(const MatrixFView& rows, std::span<const RowRange> clips,
             throw std::invalid_argument("a member is empty or reaches beyond its clip");
     }
     if (options.surroundings < 1 || options.slip < 0 || options.members < 1 ||
-        options.candidates < 1 || !(options.unlike > 0) || !(options.reach > 0) ||
-        !(options.own_reach > 0))
+        options.candidates < 1 || !(options.reach > 0))
         throw std::invalid_argument("options of bundle links must be positive");
 }
 
@@ -70,11 +70,9 @@ Speakers speakers_of(std::span<const RowRange> clips, std::span<const BundleMemb
         for (int64_t i = 0; i < taken; ++i) {
             const MotionPiece& piece = pieces[static_cast<size_t>(i * count / taken)];
             const RowRange& clip = clips[static_cast<size_t>(piece.clip)];
-            const RowRange member{clip.first + piece.first, clip.first + piece.end};
-            const int64_t missing = std::max<int64_t>(0, options.surroundings - member.size());
             own.push_back(speakers.occurrences.size());
-            speakers.occurrences.push_back({member, grown(member, (missing + 1) / 2, clip),
-                                            grown(member, options.surroundings, clip)});
+            speakers.occurrences.push_back(
+                {{clip.first + piece.first, clip.first + piece.end}, clip});
         }
     }
     return speakers;
@@ -88,13 +86,19 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+MatrixF measured(const MatrixFView& rows, const Speakers& speakers) {
+    std::vector<RowRange> members;
+    for (const Occurrence& one : speakers.occurrences) members.push_back(one.member);
+    return rows_by_member_metric(rows, members, speakers.of_bundle);
+}
+
 /// Bundles are named by their places in Speakers here.
 class Linking {
   public:
     Linking(const MatrixFView& rows, Speakers speakers, const BundleLinkOptions& options,
             int threads)
         : speakers_(std::move(speakers)),
-          members_(rows, speakers_.occurrences, options),
+          members_(measured(rows, speakers_), speakers_.occurrences, options),
           options_(options),
           threads_(threads),
           kinds_(count()) {}
@@ -103,7 +107,6 @@ class Linking {
         BundleLinks result;
         find_usual();
         result.usual_cost = usual_cost_;
-        result.usual_unlikeness = usual_unlikeness_;
         unite_kinds();
         result.kind_of = kinds_by_bundle();
         if (usual_cost_ > 0) result.links = links();
@@ -134,28 +137,21 @@ class Linking {
 
     void find_usual() {
         const auto bundles = static_cast<size_t>(count());
-        std::vector<std::vector<Agreement>> of_bundle(bundles);
+        std::vector<std::vector<double>> of_bundle(bundles);
         parallel_for(threads_, count(), [&](int64_t b) {
             const auto& own = members(static_cast<int32_t>(b));
             for (const size_t from : own) {
-                Agreement best;
+                double best = infinite;
                 for (const size_t to : own) {
                     if (members_.share_surroundings(from, to)) continue;
-                    const Agreement found = members_.find(from, to, best.cost, infinite);
-                    if (found.cost < best.cost) best = found;
+                    best = std::min(best, members_.find(from, to, best).cost);
                 }
-                if (best.cost < infinite) of_bundle[static_cast<size_t>(b)].push_back(best);
+                if (best < infinite) of_bundle[static_cast<size_t>(b)].push_back(best);
             }
         });
-        std::vector<double> costs, unlikeness;
-        for (const auto& own : of_bundle) {
-            for (const Agreement& one : own) {
-                costs.push_back(one.cost);
-                unlikeness.push_back(one.unlikeness);
-            }
-        }
+        std::vector<double> costs;
+        for (const auto& own : of_bundle) costs.insert(costs.end(), own.begin(), own.end());
         usual_cost_ = median(std::move(costs));
-        usual_unlikeness_ = median(std::move(unlikeness));
     }
 
     /// How far the middle of a member of the one is from the nearest of the other.
@@ -167,26 +163,25 @@ class Linking {
         return least;
     }
 
-    /// The cheapest path from a member of the one to a member of the other.
-    double way(int32_t from, int32_t to, double reach, double at_most) const {
-        double best = at_most;
-        bool found = false;
+    /// How far the one is from the other, by the members that are nearest.
+    double way(int32_t from, int32_t to, double at_most) const {
+        const double reach = options_.reach * usual_cost_;
+        double least = infinite;
         for (const size_t a : members(from)) {
             for (const size_t b : members(to)) {
-                if (members_.glance(a, b) > reach || members_.bound(a, b, best) > best) continue;
-                const double cost = members_.find(a, b, best, usual_unlikeness_).cost;
-                if (cost > best) continue;
-                best = cost;
-                found = true;
+                if (members_.glance(a, b) > reach) continue;
+                const Agreement found = members_.find(a, b, reach);
+                if (found.cost > reach) continue;
+                least = std::min(least, found.cost / usual_cost_ * found.unlikeness);
             }
         }
-        return found ? best : infinite;
+        return least <= at_most ? least : infinite;
     }
 
     /// How far apart two bundles are that agree; infinite when they do not, or not within at_most.
-    double distance(int32_t a, int32_t b, double reach, double at_most) const {
-        const double there = way(a, b, reach, at_most);
-        return there == infinite ? infinite : std::max(there, way(b, a, reach, at_most));
+    double distance(int32_t a, int32_t b, double at_most) const {
+        const double there = way(a, b, at_most);
+        return there == infinite ? infinite : std::max(there, way(b, a, at_most));
     }
 
     /// Of each subject the bundles that look nearest, within reach, by subject and nearness.
@@ -211,13 +206,13 @@ class Linking {
     }
 
     void unite_kinds() {
-        const double reach = options_.own_reach * usual_cost_;
+        const double reach = options_.reach * usual_cost_;
         parallel_for(threads_, count(), [&](int64_t i) {
             const auto a = static_cast<int32_t>(i);
             const auto own = [&](int32_t other) { return other == subject(a); };
             for (const Candidate& one : candidates(a, reach, own)) {
                 if (kinds_.together(a, one.bundle)) continue;
-                if (distance(a, one.bundle, reach, reach) <= reach) kinds_.unite(a, one.bundle);
+                if (distance(a, one.bundle, farthest) <= farthest) kinds_.unite(a, one.bundle);
             }
         });
     }
@@ -242,7 +237,7 @@ class Linking {
             if (near.empty() || near.back().subject != one.subject)
                 near.push_back({.subject = one.subject});
             Near& best = near.back();
-            const double cost = distance(a, one.bundle, reach, std::min(reach, best.cost));
+            const double cost = distance(a, one.bundle, std::min(farthest, best.cost));
             if (std::pair(cost, one.bundle) < std::pair(best.cost, best.bundle))
                 best = {one.subject, one.bundle, cost};
         }
@@ -279,7 +274,7 @@ class Linking {
     BundleLinkOptions options_;
     int threads_;
     DisjointSets kinds_;
-    double usual_cost_ = 0, usual_unlikeness_ = 0;
+    double usual_cost_ = 0;
 };
 
 }  // namespace

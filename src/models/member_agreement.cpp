@@ -2,159 +2,195 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "kinetome/math/moments.h"
-#include "kinetome/math/symmetric_eigen.h"
+#include <utility>
 
 namespace kinetome {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// They hold more than nineteen twentieths of what the points of bodies vary.
-constexpr Eigen::Index most_axes = 16;
+/// Of the surroundings asked for, where clips are short.
+constexpr double least_share = 0.6;
 
-MatrixF along_main_axes(const MatrixFView& rows, std::span<const Occurrence> occurrences) {
-    Eigen::Index count = 0;
-    for (const Occurrence& one : occurrences) count += one.query.size();
-    MatrixF sample(count, rows.cols());
-    count = 0;
-    for (const Occurrence& one : occurrences) {
-        sample.middleRows(count, one.query.size()) =
-            rows.middleRows(one.query.first, one.query.size());
-        count += one.query.size();
-    }
-    const Moments moments = moments_of(sample);
-    const MatrixD axes =
-        symmetric_eigen(moments.scatter).vectors.leftCols(std::min(most_axes, rows.cols()));
-    MatrixF along(rows.rows(), axes.cols());
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-        along.row(i) =
-            ((rows.row(i).cast<double>() - moments.mean.transpose()) * axes).cast<float>();
-    }
-    return along;
-}
-
-/// Movements along a path about the mean of each, a cell.
-struct Movement {
-    double apart = 0;  ///< Σ|x - y|²
-    double whole = 0;  ///< Σ|x|² + Σ|y|²
+/// How far surroundings reach to either side of a middle.
+struct Reach {
+    int64_t before = 0, after = 0;
+    int64_t rows() const { return before + 1 + after; }
 };
 
-Movement movement(const MatrixF& rows, const WarpPath& path, int64_t first, int64_t second) {
+/// About as much before as after; where a clip begins or ends, more on the other side.
+Reach reach_within(int64_t before, int64_t after, int64_t rows) {
+    Reach reach{std::min(before, rows / 2), 0};
+    reach.after = std::min(after, rows - 1 - reach.before);
+    reach.before = std::min(before, rows - 1 - reach.after);
+    return reach;
+}
+
+/// Two rows that answer each other.
+struct Answer {
+    int64_t one = 0, other = 0;
+};
+
+/// The cheapest paths outwards, in one direction, from a row and those it may answer: over `length`
+/// rows more, neither going more than twice as fast as the other. Cells count by the rows of the
+/// one that the path goes on by from there (WarpWeight::first).
+class OutwardPaths {
+  public:
+    /// `columns` are the rows, an axis after the other; `others` what the middle may answer, `clip`
+    /// those rows' own; `direction` is 1 or -1. Given up when all paths cost more than `hopeless`.
+    OutwardPaths(const MatrixF& columns, int64_t middle, int64_t length, int direction,
+                 const RowRange& others, const RowRange& clip, float hopeless)
+        : columns_(columns),
+          middle_(middle),
+          length_(length),
+          direction_(direction),
+          answers_(others.size()),
+          origin_(direction > 0 ? others.first : others.end - 1),
+          count_(std::min(answers_ + 2 * length,
+                          direction > 0 ? clip.end - origin_ : origin_ + 1 - clip.first)),
+          distances_(length + 1, count_),
+          totals_(Totals::Constant(length + 1, count_ + longest_step, infinite)) {
+        for (int64_t i = length; i >= 0 && alive_; --i) alive_ = come_to(i) <= hopeless;
+    }
+
+    bool alive() const { return alive_; }
+
+    /// From the middle and this row.
+    float total(int64_t other) const { return totals_(0, direction_ * (other - origin_)); }
+    float distance(int64_t other) const { return distances_(0, direction_ * (other - origin_)); }
+
+    /// Appends what answers what from there on, but for the middle itself.
+    void trace(int64_t other, std::vector<Answer>& answers) const {
+        int64_t at = direction_ * (other - origin_);
+        for (int64_t i = 0; i < length_;) {
+            const float one = totals_(i + 1, at + 1), two = totals_(i + 1, at + 2);
+            const float half =
+                i + 2 <= length_ ? totals_(i + 2, at + 1) + distances_(i, at) : infinite;
+            const bool passes = half < std::min(one, two);
+            at += !passes && two < one ? 2 : 1;
+            i += passes ? 2 : 1;
+            answers.push_back({middle_ + direction_ * i, origin_ + direction_ * at});
+        }
+    }
+
+  private:
+    using Totals = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    static constexpr int64_t longest_step = 2;
+
+    /// Adds row i; what the cheapest path costs that comes through it or passes over it.
+    float come_to(int64_t i) {
+        const int64_t first = (i + 1) / 2;
+        const int64_t size = std::min(count_, answers_ + 2 * i) - first;
+        if (size <= 0) return infinite;
+        auto here = distances_.row(i).segment(first, size);
+        here.setZero();
+        const int64_t begin = direction_ > 0 ? origin_ + first : origin_ - first - size + 1;
+        for (Eigen::Index axis = 0; axis < columns_.rows(); ++axis) {
+            here += (columns_.row(axis).segment(begin, size).array() -
+                     columns_(axis, middle_ + direction_ * i))
+                        .square();
+        }
+        here = here.sqrt();
+        if (direction_ < 0) here.reverseInPlace();
+        auto total = totals_.row(i).segment(first, size);
+        if (i == length_) {
+            total = here;
+            return total.minCoeff();
+        }
+        const auto onward = totals_.row(i + 1);
+        total = onward.segment(first + 1, size).min(onward.segment(first + 2, size)) + here;
+        if (i + 2 <= length_)
+            total = total.min(totals_.row(i + 2).segment(first + 1, size) + 2 * here);
+        return std::min(total.minCoeff(), onward.minCoeff());
+    }
+
+    const MatrixF& columns_;
+    int64_t middle_, length_, direction_, answers_, origin_, count_;
+    Totals
+        distances_;  ///< by rows outwards, and by those of the other from the first it may answer
+    Totals totals_;  ///< of what follows outwards, the cell itself counted
+    bool alive_ = true;
+};
+
+/// How unlike the movements are that answer each other, each about its mean.
+double unlikeness(const MatrixF& rows, const std::vector<Answer>& answers) {
     Eigen::RowVectorXd x_mean = Eigen::RowVectorXd::Zero(rows.cols()), y_mean = x_mean;
-    for (const WarpCell& cell : path.cells) {
-        x_mean += rows.row(first + cell.first).cast<double>();
-        y_mean += rows.row(second + cell.second).cast<double>();
+    for (const Answer& answer : answers) {
+        x_mean += rows.row(answer.one).cast<double>();
+        y_mean += rows.row(answer.other).cast<double>();
     }
-    const auto cells = static_cast<double>(path.cells.size());
-    x_mean /= cells;
-    y_mean /= cells;
-    Movement sum;
-    for (const WarpCell& cell : path.cells) {
-        const Eigen::RowVectorXd x = rows.row(first + cell.first).cast<double>() - x_mean;
-        const Eigen::RowVectorXd y = rows.row(second + cell.second).cast<double>() - y_mean;
-        sum.apart += (x - y).squaredNorm();
-        sum.whole += x.squaredNorm() + y.squaredNorm();
+    x_mean /= static_cast<double>(answers.size());
+    y_mean /= static_cast<double>(answers.size());
+    double apart = 0, whole = 0;
+    for (const Answer& answer : answers) {
+        const Eigen::RowVectorXd x = rows.row(answer.one).cast<double>() - x_mean;
+        const Eigen::RowVectorXd y = rows.row(answer.other).cast<double>() - y_mean;
+        apart += (x - y).squaredNorm();
+        whole += x.squaredNorm() + y.squaredNorm();
     }
-    return {sum.apart / cells, sum.whole / cells};
+    return whole > 0 ? std::sqrt(apart / whole) : 1;
 }
 
 }  // namespace
 
-MemberAgreement::MemberAgreement(const MatrixFView& rows, std::vector<Occurrence> occurrences,
+MemberAgreement::MemberAgreement(MatrixF rows, std::vector<Occurrence> occurrences,
                                  const BundleLinkOptions& options)
-    : rows_(along_main_axes(rows, occurrences)),
+    : rows_(std::move(rows)),
+      columns_(rows_.transpose()),
       occurrences_(std::move(occurrences)),
-      options_(options) {
-    columns_ = rows_.transpose();
-}
+      options_(options) {}
 
 bool MemberAgreement::share_surroundings(size_t a, size_t b) const {
-    const RowRange &one = occurrences_[a].query, &other = occurrences_[b].query;
-    return one.first < other.end && other.first < one.end;
+    return std::abs(occurrences_[a].middle() - occurrences_[b].middle()) < options_.surroundings;
+}
+
+RowRange MemberAgreement::answers(size_t to) const {
+    const Occurrence& other = occurrences_[to];
+    return {std::max(other.clip.first, other.member.first - options_.slip),
+            std::min(other.clip.end, other.member.end + options_.slip)};
 }
 
 double MemberAgreement::glance(size_t from, size_t to) const {
-    const RowRange &member = occurrences_[from].member, &other = occurrences_[to].member;
-    const RowRange& within = occurrences_[to].sequence;
-    const auto middle = rows_.row((member.first + member.end) / 2);
-    const int64_t first = std::max(within.first, other.first - options_.slip);
-    const int64_t end = std::min(within.end, other.end + options_.slip);
-    float least = std::numeric_limits<float>::infinity();
-    for (int64_t row = first; row < end; ++row)
+    const auto middle = rows_.row(occurrences_[from].middle());
+    const RowRange others = answers(to);
+    float least = infinite;
+    for (int64_t row = others.first; row < others.end; ++row)
         least = std::min(least, (rows_.row(row) - middle).squaredNorm());
     return std::sqrt(static_cast<double>(least));
 }
 
-double MemberAgreement::bound(size_t from, size_t to, double at_most) const {
-    const RowRange &query = occurrences_[from].query, &sequence = occurrences_[to].sequence;
-    const Eigen::Index count = sequence.size();
-    constexpr Eigen::Index longest_step = 2;
-    constexpr double rounding = 1e-5;  // relative, of sums of floats
-    const double hopeless = at_most * static_cast<double>(query.size()) * (1 + rounding);
-    // Totals of the row before the last, of the last and of this one, by where paths end.
-    Eigen::ArrayXf before =
-        Eigen::ArrayXf::Constant(count + longest_step, std::numeric_limits<float>::infinity());
-    Eigen::ArrayXf last = before, here = before, distance(count);
-    for (int64_t row = query.first; row < query.end; ++row) {
-        distance.setZero();
-        for (Eigen::Index axis = 0; axis < columns_.rows(); ++axis) {
-            const auto y = columns_.row(axis).segment(sequence.first, count).transpose().array();
-            distance += (y - rows_(row, axis)).square();
-        }
-        distance = distance.sqrt();
-        if (row == query.first) {
-            here.tail(count) = distance;
-        } else {
-            here.tail(count) = (last.segment(1, count).min(last.head(count)) + distance)
-                                   .min(before.segment(1, count) + 2 * distance);
-        }
-        // A path comes through this row or the one before.
-        const float least = std::min(here.minCoeff(), last.minCoeff());
-        if (static_cast<double>(least) > hopeless) return infinite;
-        std::swap(before, last);
-        std::swap(last, here);
-    }
-    const auto total = static_cast<double>(last.minCoeff());
-    const double mean = total / static_cast<double>(query.size()) * (1 - rounding);
-    return mean > at_most ? infinite : mean;
-}
-
-/// Whether the middle of what answers the one member lies in the other, or that one's middle in
-/// what answers, but for a slip.
-bool MemberAgreement::answers(const WarpPath& path, const Occurrence& from,
-                              const Occurrence& to) const {
-    RowRange answered{std::numeric_limits<int64_t>::max(), 0};
-    for (const WarpCell& cell : path.cells) {
-        const int64_t row = from.query.first + cell.first;
-        if (row < from.member.first || row >= from.member.end) continue;
-        const int64_t other = to.sequence.first + cell.second;
-        answered = {std::min(answered.first, other), std::max(answered.end, other + 1)};
-    }
-    if (answered.first >= answered.end) return false;
-    const auto in_the_midst = [&](const RowRange& range, const RowRange& other) {
-        const int64_t middle = (range.first + range.end) / 2;
-        return middle >= other.first - options_.slip && middle < other.end + options_.slip;
-    };
-    return in_the_midst(answered, to.member) || in_the_midst(to.member, answered);
-}
-
-Agreement MemberAgreement::find(size_t from, size_t to, double at_most, double unlikeness) const {
+Agreement MemberAgreement::find(size_t from, size_t to, double at_most) const {
     const Occurrence &one = occurrences_[from], &other = occurrences_[to];
-    MatchOptions match;
-    match.at_most = at_most;
-    const auto paths =
-        warp_matches(rows_.middleRows(one.query.first, one.query.size()),
-                     rows_.middleRows(other.sequence.first, other.sequence.size()), match);
-    Agreement best;
-    for (const WarpPath& path : paths) {
-        if (path.cells.empty() || path.mean >= best.cost || !answers(path, one, other)) continue;
-        const Movement moved = movement(rows_, path, one.query.first, other.sequence.first);
-        if (moved.apart > std::max(unlikeness, options_.unlike * moved.whole)) continue;
-        best = {path.mean, moved.apart};
+    const Reach reach =
+        reach_within(std::min(one.middle() - one.clip.first, other.middle() - other.clip.first),
+                     std::min(one.clip.end - one.middle(), other.clip.end - other.middle()) - 1,
+                     options_.surroundings);
+    if (static_cast<double>(reach.rows()) <
+        least_share * static_cast<double>(options_.surroundings))
+        return {};
+    const auto rows = static_cast<double>(reach.rows());
+    const auto hopeless = static_cast<float>(at_most * rows);
+    const RowRange others = answers(to);
+    const OutwardPaths after(columns_, one.middle(), reach.after, 1, others, other.clip, hopeless);
+    if (!after.alive()) return {};
+    const OutwardPaths before(columns_, one.middle(), reach.before, -1, others, other.clip,
+                              hopeless);
+    if (!before.alive()) return {};
+    float least = infinite;
+    int64_t answer = others.first;
+    for (int64_t row = others.first; row < others.end; ++row) {
+        // The middle counts once.
+        const float total = after.total(row) + before.total(row) - after.distance(row);
+        if (!(total < least)) continue;
+        least = total;
+        answer = row;
     }
-    return best;
+    const double cost = static_cast<double>(least) / rows;
+    if (!(cost <= at_most)) return {};
+    std::vector<Answer> path{{one.middle(), answer}};
+    after.trace(answer, path);
+    before.trace(answer, path);
+    return {cost, unlikeness(rows_, path)};
 }
 
 }  // namespace kinetome

@@ -3,12 +3,10 @@
 
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "kinetome/base/matrix.h"
 #include "kinetome/base/pieces.h"
-#include "kinetome/math/warp.h"
 #include "kinetome/models/bundle_links.h"
 
 namespace kinetome {
@@ -16,39 +14,37 @@ namespace kinetome {
 /// A member that speaks for its bundle. Ranges are of all rows.
 struct Occurrence {
     RowRange member;
-    RowRange query;     ///< it and what surrounds it
-    RowRange sequence;  ///< in which others are looked for
+    RowRange clip;
+    int64_t middle() const { return (member.first + member.end - 1) / 2; }
 };
 
-/// How a member is found in the surroundings of another.
+/// How a member and its surroundings are found about another.
 struct Agreement {
     double cost = std::numeric_limits<double>::infinity();  ///< mean distance along the path
-    double unlikeness = 0;  ///< of their movements about their means, Σ|x - y|² a cell
+    double unlikeness = 1;  ///< √(Σ|x - y|² / (Σ|x|² + Σ|y|²)) of what moves, each about its mean:
+                            ///< 0 of the same movement, 1 of movements that share nothing
 };
 
 class MemberAgreement {
   public:
-    /// Rows are compared along the main axes of those of `occurrences`.
-    MemberAgreement(const MatrixFView& rows, std::vector<Occurrence> occurrences,
+    /// `rows` by their metric (member_metric.h).
+    MemberAgreement(MatrixF rows, std::vector<Occurrence> occurrences,
                     const BundleLinkOptions& options);
 
-    /// How far the middle row of the one member is from the nearest of the other's, but for a slip.
+    /// How far the middle of the one is from the nearest row that it may answer in the other.
     double glance(size_t from, size_t to) const;
-    /// No path from the one in the surroundings of the other costs less; infinite as soon as that
-    /// is above `at_most`.
-    double bound(size_t from, size_t to, double at_most) const;
 
-    /// The cheapest path of at most `at_most` on which both move alike: what remains of their
-    /// movements is at most `unlikeness`, or the options' share of what they move. An infinite cost
-    /// when there is none.
-    Agreement find(size_t from, size_t to, double at_most, double unlikeness) const;
+    /// The cheapest path through the middle of the one and a row that it may answer in the other,
+    /// over the surroundings of the one, if it costs `at_most`; an infinite cost when none does.
+    Agreement find(size_t from, size_t to, double at_most) const;
 
     bool share_surroundings(size_t a, size_t b) const;
 
   private:
-    bool answers(const WarpPath& path, const Occurrence& from, const Occurrence& to) const;
+    /// Rows that the middle of another member may answer in this: its own, but for a slip.
+    RowRange answers(size_t to) const;
 
-    MatrixF rows_;     ///< along main axes
+    MatrixF rows_;
     MatrixF columns_;  ///< the same, an axis after the other
     std::vector<Occurrence> occurrences_;
     BundleLinkOptions options_;

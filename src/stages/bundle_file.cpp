@@ -128,8 +128,8 @@ void write_bundle_graph(ArtifactWriter& file, const StoredBundleGraph& stored) {
                              "node that holds the same motion as another, of another body"),
                         first);
     file.write<int32_t>(spec("links/second", ElementType::int32, "1", "that node"), second);
-    file.write<double>(spec("links/cost", ElementType::float64, "leg lengths",
-                            "mean distance along the warp from one to the other"),
+    file.write<double>(spec("links/cost", ElementType::float64, "1",
+                            "how far apart they are, of what is linked at most"),
                        costs);
     const BundleGraphFrames& frames = stored.bundles.frames;
     file.write<int64_t>(

@@ -58,6 +58,12 @@ struct Performances {
         return bundle;
     }
 
+    /// Moves one column of some clips.
+    void move(int column, float by, const std::vector<size_t>& of_clips) {
+        for (const size_t clip : of_clips)
+            rows.col(column).segment(clips[clip].first, clip_rows).array() += by;
+    }
+
     BundleLinks link(int threads = 1, const BundleLinkOptions& options = {}) const {
         return link_bundles(rows, clips, members, subject_of, options, threads);
     }
@@ -88,13 +94,25 @@ TEST_CASE("bundles of opposite phases of a cycle are not linked") {
 }
 
 TEST_CASE("movements of different limbs are not linked, however near they are") {
-    // As a left and a right punch: within reach of each other, but for what they move.
-    for (const int other : {0, 1}) {
+    // As a left and a right punch, which are as near as the same punch in another posture.
+    Performances postures;
+    postures.add(0, {.column = 0, .extent = 0.2}, 0, 0);
+    postures.add(1, {.column = 0, .extent = 0.2}, 0.06, 0);
+    CHECK(postures.link(1, {.reach = 10}).links.size() == 1);
+    Performances limbs;
+    limbs.add(0, {.column = 0, .extent = 0.1}, 0, 0);
+    limbs.add(1, {.column = 1, .extent = 0.1}, 0, 0);
+    CHECK(limbs.link(1, {.reach = 10}).links.empty());
+}
+
+TEST_CASE("what members of a bundle vary in hardly tells bodies apart") {
+    for (const bool varied : {false, true}) {
         Performances performances;
-        performances.add(0, {.column = 0, .extent = 0.2}, 0, 0);
-        performances.add(1, {.column = other, .extent = 0.2}, 0, 0);
-        CHECK(performances.link(1, {.reach = 10, .unlike = 10}).links.size() == 1);
-        CHECK(performances.link(1, {.reach = 10}).links.size() == (other == 0 ? 1 : 0));
+        performances.add(0, {.column = 0}, 0, 0);
+        performances.add(1, {.column = 0}, 0, 0);
+        performances.move(2, 0.3, {2, 3});
+        if (varied) performances.move(2, 0.3, {1});
+        CHECK(performances.link().links.size() == (varied ? 1 : 0));
     }
 }
 
@@ -104,21 +122,32 @@ TEST_CASE("a bundle is linked with the nearest of another body") {
     performances.add(1, {.extent = 1.1}, 0, 0);
     performances.add(1, {.extent = 1.02}, 0, 0);
     // The farther one has none nearer.
-    CHECK(pairs_of(performances.link(1, {.reach = 10, .own_reach = 10})) == Pairs{{0, 1}, {0, 2}});
-    CHECK(performances.link(1, {.reach = 10, .own_reach = 10}).kind_of ==
-          std::vector<int32_t>{0, 1, 1});
+    const BundleLinks links = performances.link();
+    CHECK(pairs_of(links) == Pairs{{0, 1}, {0, 2}});
+    CHECK(links.kind_of == std::vector<int32_t>{0, 1, 1});
+    CHECK(links.links.front().cost > links.links.back().cost);
+    CHECK(links.links.front().cost < 1);
 }
 
 TEST_CASE("a bundle is not linked with what another kind of motion of its body resembles more") {
     Performances performances;
     performances.add(0, {.extent = 1}, 0, 0);
-    performances.add(0, {.extent = 1.3}, 0, 0);
-    performances.add(1, {.extent = 1.32}, 0, 0);
-    const BundleLinks links = performances.link(1, {.reach = 10, .own_reach = 1.5});
+    performances.add(0, {.extent = 1.5}, 0, 0);
+    performances.add(1, {.extent = 1.28}, 0, 0);
+    const BundleLinks links = performances.link(1, {.reach = 10});
     CHECK(links.kind_of == std::vector<int32_t>{0, 1, 2});
     CHECK(pairs_of(links) == Pairs{{1, 2}});
-    // Both are one kind of motion when they are like enough.
-    CHECK(pairs_of(performances.link(1, {.reach = 10, .own_reach = 10})) == Pairs{{0, 2}, {1, 2}});
+    // One between both makes them one kind of motion.
+    performances.add(0, {.extent = 1.25}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 2}, {1, 2}, {2, 3}});
+}
+
+TEST_CASE("members at the ends of their takes are linked by what there is of their surroundings") {
+    Performances performances;
+    performances.add(0, {.column = 0}, 0, 0);
+    performances.add(1, {.column = 0}, 0, 0);
+    performances.members = {{0, {0, 0, 10}}, {0, {1, 60, 70}}, {1, {2, 20, 30}}, {1, {3, 40, 50}}};
+    CHECK(performances.link().links.size() == 1);
 }
 
 TEST_CASE("movements in postures far apart are not linked") {
