@@ -10,7 +10,7 @@
 #include "kinetome/base/digest.h"
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
-#include "kinetome/base/packing.h"
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/skeleton_packing.h"
 
@@ -22,25 +22,20 @@ constexpr std::string_view magic = "kinetome motion 1\n";
 constexpr int64_t preamble = static_cast<int64_t>(magic.size() + 2 * sizeof(uint64_t));
 
 void pack(Packer& out, const CompressedClip& clip) {
-    out.put(std::string_view(clip.name)).put(clip.skeleton).put(clip.rate).put(clip.frames);
-    out.put(static_cast<uint64_t>(clip.blocks.size()));
-    for (const CompressedBlock& block : clip.blocks) {
-        out.put(block.offset).put(static_cast<int32_t>(block.bytes)).put(block.hash);
-    }
+    pack_all(out, clip.name, clip.skeleton, clip.rate, clip.frames);
+    pack_each(out, clip.blocks, [&](const CompressedBlock& block) {
+        pack_all(out, block.offset, static_cast<int32_t>(block.bytes), block.hash);
+    });
     kinetome::pack(out, clip.keys);
 }
 
 void unpack(Unpacker& in, CompressedClip& clip) {
-    clip.name = in.get_text();
-    kinetome::unpack(in, clip.skeleton);
-    kinetome::unpack(in, clip.rate);
-    kinetome::unpack(in, clip.frames);
-    for (auto left = in.get<uint64_t>(); left > 0; --left) {
-        CompressedBlock& block = clip.blocks.emplace_back();
-        kinetome::unpack(in, block.offset);
-        block.bytes = in.get<int32_t>();
-        kinetome::unpack(in, block.hash);
-    }
+    unpack_all(in, clip.name, clip.skeleton, clip.rate, clip.frames);
+    unpack_each(in, clip.blocks, [&](CompressedBlock& block) {
+        int32_t bytes = 0;
+        unpack_all(in, block.offset, bytes, block.hash);
+        block.bytes = bytes;
+    });
     kinetome::unpack(in, clip.keys);
 }
 

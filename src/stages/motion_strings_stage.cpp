@@ -2,6 +2,7 @@
 // to be equal (S1 §3.2, §3.6).
 #include <algorithm>
 
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/models/motion_string.h"
 #include "kinetome/models/pose_clusters.h"
 #include "kinetome/stages/pose_cluster_file.h"
@@ -22,16 +23,11 @@ struct PartitionString {
 };
 
 void pack(Packer& out, const PartitionString& spelled) {
-    pack(out, spelled.string);
-    pack(out, spelled.accessibility);
-    out.put(spelled.tau).put(spelled.lambda);
+    pack_all(out, spelled.string, spelled.accessibility, spelled.tau, spelled.lambda);
 }
 
 void unpack(Unpacker& in, PartitionString& spelled) {
-    unpack(in, spelled.string);
-    unpack(in, spelled.accessibility);
-    spelled.tau = in.get<double>();
-    spelled.lambda = in.get<int64_t>();
+    unpack_all(in, spelled.string, spelled.accessibility, spelled.tau, spelled.lambda);
 }
 
 /// Of a partition that all ranks work on, rank 0 has the result.

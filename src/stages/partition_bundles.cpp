@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kinetome/base/pack_fields.h"
+
 namespace kinetome {
 namespace {
 
@@ -50,25 +52,17 @@ PartitionBundles find_partition_bundles(const StoredMotionString& spelled, const
 }
 
 void pack(Packer& out, const PartitionBundles& bundles) {
-    out.put(static_cast<uint64_t>(bundles.members.size()));
-    for (const BundleMember& member : bundles.members) {
-        out.put(member.bundle).put(member.frames.clip);
-        out.put(member.frames.first).put(member.frames.end);
-    }
-    out.put(bundles.bundles).put(bundles.first_score).put(bundles.end_score);
+    pack_each(out, bundles.members, [&](const BundleMember& one) {
+        pack_all(out, one.bundle, one.frames.clip, one.frames.first, one.frames.end);
+    });
+    pack_all(out, bundles.bundles, bundles.first_score, bundles.end_score);
 }
 
 void unpack(Unpacker& in, PartitionBundles& bundles) {
-    bundles.members.resize(in.get<uint64_t>());
-    for (BundleMember& member : bundles.members) {
-        member.bundle = in.get<int32_t>();
-        member.frames.clip = in.get<int32_t>();
-        member.frames.first = in.get<int64_t>();
-        member.frames.end = in.get<int64_t>();
-    }
-    bundles.bundles = in.get<int32_t>();
-    bundles.first_score = in.get<double>();
-    bundles.end_score = in.get<double>();
+    unpack_each(in, bundles.members, [&](BundleMember& one) {
+        unpack_all(in, one.bundle, one.frames.clip, one.frames.first, one.frames.end);
+    });
+    unpack_all(in, bundles.bundles, bundles.first_score, bundles.end_score);
 }
 
 }  // namespace kinetome

@@ -2,6 +2,7 @@
 // with a checkpoint after every iteration of EM (S1 §3.2).
 #include <fmt/format.h>
 
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/base/piece_sum.h"
 #include "kinetome/run/checkpoint.h"
 #include "kinetome/stages/pose_cluster_file.h"
@@ -22,13 +23,11 @@ struct FittedPartition {
 };
 
 void pack(Packer& out, const FittedPartition& fitted) {
-    pack(out, fitted.pca);
-    pack(out, fitted.clusters);
+    pack_all(out, fitted.pca, fitted.clusters);
 }
 
 void unpack(Unpacker& in, FittedPartition& fitted) {
-    unpack(in, fitted.pca);
-    unpack(in, fitted.clusters);
+    unpack_all(in, fitted.pca, fitted.clusters);
 }
 
 Pca principal_components(const StageContext& context, const PosePartition& partition,

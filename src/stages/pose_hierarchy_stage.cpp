@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/base/piece_sum.h"
 #include "kinetome/math/kept_rows.h"
 #include "kinetome/run/checkpoint.h"
@@ -22,13 +23,11 @@ struct GrownClass {
 };
 
 void pack(Packer& out, const GrownClass& one) {
-    pack(out, one.principal);
-    pack(out, one.grown);
+    pack_all(out, one.principal, one.grown);
 }
 
 void unpack(Unpacker& in, GrownClass& one) {
-    unpack(in, one.principal);
-    unpack(in, one.grown);
+    unpack_all(in, one.principal, one.grown);
 }
 
 Moments marker_moments(const StageContext& context, const PosePartition& partition,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/models/adapted_radius.h"
 #include "kinetome/models/alternations.h"
 #include "kinetome/models/take_segmentation.h"
@@ -14,24 +15,17 @@
 namespace kinetome {
 // Found where for_takes looks for them: beside the type.
 static void pack(Packer& out, const TakePrimitives& take) {
-    out.put(static_cast<uint64_t>(take.primitives.size()));
-    for (size_t p = 0; p < take.primitives.size(); ++p) {
-        const Primitive& primitive = take.primitives[p];
-        out.put(primitive.frames.first).put(primitive.frames.end);
-        out.put(primitive.activity).put(take.clusters[p]);
-    }
+    pack_each(out, take.primitives, [&](const Primitive& one) {
+        pack_all(out, one.frames.first, one.frames.end, one.activity);
+    });
+    pack(out, take.clusters);
 }
 
 static void unpack(Unpacker& in, TakePrimitives& take) {
-    take.primitives.resize(in.get<uint64_t>());
-    take.clusters.resize(take.primitives.size());
-    for (size_t p = 0; p < take.primitives.size(); ++p) {
-        Primitive& primitive = take.primitives[p];
-        primitive.frames.first = in.get<int64_t>();
-        primitive.frames.end = in.get<int64_t>();
-        primitive.activity = in.get<int32_t>();
-        take.clusters[p] = in.get<int32_t>();
-    }
+    unpack_each(in, take.primitives, [&](Primitive& one) {
+        unpack_all(in, one.frames.first, one.frames.end, one.activity);
+    });
+    unpack(in, take.clusters);
 }
 
 namespace {

@@ -1,4 +1,5 @@
 // segments: every take cut into activities and transitions (S3 §3.1).
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/models/take_segmentation.h"
 #include "kinetome/stages/graph_takes.h"
 #include "kinetome/stages/segment_file.h"
@@ -14,21 +15,18 @@ struct TakeSegments {
 };
 
 void pack(Packer& out, const TakeSegments& take) {
-    out.put(static_cast<uint64_t>(take.segments.size()));
-    for (const Segment& segment : take.segments) {
-        out.put(segment.frames.first).put(segment.frames.end);
-        out.put(static_cast<int32_t>(segment.kind)).put(segment.cluster);
-    }
+    pack_each(out, take.segments, [&](const Segment& one) {
+        pack_all(out, one.frames.first, one.frames.end, static_cast<int32_t>(one.kind),
+                 one.cluster);
+    });
 }
 
 void unpack(Unpacker& in, TakeSegments& take) {
-    take.segments.resize(in.get<uint64_t>());
-    for (Segment& segment : take.segments) {
-        segment.frames.first = in.get<int64_t>();
-        segment.frames.end = in.get<int64_t>();
-        segment.kind = static_cast<SegmentKind>(in.get<int32_t>());
-        segment.cluster = in.get<int32_t>();
-    }
+    unpack_each(in, take.segments, [&](Segment& one) {
+        int32_t kind = 0;
+        unpack_all(in, one.frames.first, one.frames.end, kind, one.cluster);
+        one.kind = static_cast<SegmentKind>(kind);
+    });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "clip_pipeline.h"
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/stages/pose_hierarchy_file.h"
 #include "kinetome/stages/pose_rows.h"
 #include "kinetome/stages/signature_file.h"
@@ -20,31 +21,23 @@ struct SignatureShare {
 };
 
 void pack(Packer& out, const SignatureShare& share) {
-    out.put(std::span<const int32_t>(share.clips));
+    pack(out, share.clips);
     for (const PlacedSignature& signature : share.signatures) {
-        out.put(static_cast<uint64_t>(signature.runs.size()));
-        for (const SignatureRun& run : signature.runs) {
-            out.put(run.leaf).put(run.first_frame).put(run.frames);
-        }
-        pack(out, signature.positions);
-        out.put(signature.stride);
-        pack(out, signature.sample_positions);
+        pack_each(out, signature.runs, [&](const SignatureRun& run) {
+            pack_all(out, run.leaf, run.first_frame, run.frames);
+        });
+        pack_all(out, signature.positions, signature.stride, signature.sample_positions);
     }
 }
 
 void unpack(Unpacker& in, SignatureShare& share) {
-    share.clips = in.get_all<int32_t>();
+    unpack(in, share.clips);
     share.signatures.resize(share.clips.size());
     for (PlacedSignature& signature : share.signatures) {
-        signature.runs.resize(in.get<uint64_t>());
-        for (SignatureRun& run : signature.runs) {
-            for (int32_t* value : {&run.leaf, &run.first_frame, &run.frames}) {
-                *value = in.get<int32_t>();
-            }
-        }
-        unpack(in, signature.positions);
-        unpack(in, signature.stride);
-        unpack(in, signature.sample_positions);
+        unpack_each(in, signature.runs, [&](SignatureRun& run) {
+            unpack_all(in, run.leaf, run.first_frame, run.frames);
+        });
+        unpack_all(in, signature.positions, signature.stride, signature.sample_positions);
     }
 }
 

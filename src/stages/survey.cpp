@@ -9,7 +9,7 @@
 
 #include "kinetome/base/error.h"
 #include "kinetome/base/file.h"
-#include "kinetome/base/packing.h"
+#include "kinetome/base/pack_fields.h"
 #include "kinetome/base/progress.h"
 #include "kinetome/base/quote.h"
 #include "kinetome/formats/take_format.h"
@@ -186,37 +186,29 @@ struct Findings {
 };
 
 void pack(Packer& out, const Take& take) {
-    for (const std::string* text :
-         {&take.name, &take.source, &take.skeleton_source, &take.quarantined}) {
-        out.put(std::string_view(*text));
-    }
-    out.put(std::string_view(take.content.hex())).put(take.claimed_frames).put(take.bytes);
+    pack_all(out, take.name, take.source, take.skeleton_source, take.quarantined,
+             take.content.hex(), take.claimed_frames, take.bytes);
 }
 
 void unpack(Unpacker& in, Take& take) {
-    for (std::string* text : {&take.name, &take.source, &take.skeleton_source, &take.quarantined}) {
-        *text = in.get_text();
-    }
-    take.content = Digest::from_hex(in.get_text());
-    take.claimed_frames = in.get<int64_t>();
-    take.bytes = in.get<uint64_t>();
+    std::string content;
+    unpack_all(in, take.name, take.source, take.skeleton_source, take.quarantined, content,
+               take.claimed_frames, take.bytes);
+    take.content = Digest::from_hex(content);
 }
 
 void pack(Packer& out, const Findings& findings) {
-    out.put<uint64_t>(findings.takes.size());
-    for (const Take& take : findings.takes) pack(out, take);
+    pack_each(out, findings.takes, [&](const Take& take) { pack(out, take); });
     out.put<uint64_t>(findings.skeletons.size());
-    for (const auto& [path, content] : findings.skeletons) {
-        out.put(std::string_view(path)).put(std::string_view(content.hex()));
-    }
+    for (const auto& [path, content] : findings.skeletons) pack_all(out, path, content.hex());
 }
 
 void unpack(Unpacker& in, Findings& findings) {
-    findings.takes.resize(in.get<uint64_t>());
-    for (Take& take : findings.takes) unpack(in, take);
+    unpack_each(in, findings.takes, [&](Take& take) { unpack(in, take); });
     for (auto left = in.get<uint64_t>(); left > 0; --left) {
-        const std::string path = in.get_text();
-        findings.skeletons[path] = Digest::from_hex(in.get_text());
+        std::string path, content;
+        unpack_all(in, path, content);
+        findings.skeletons[path] = Digest::from_hex(content);
     }
 }
 
