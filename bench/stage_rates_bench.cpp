@@ -94,13 +94,23 @@ ReindexRequest request(const fs::path& corpus, const fs::path& store, const Reso
     return asked;
 }
 
+/// What bundles are made from: letters of each subject's own, as many as there usually are.
+ReindexRequest request_of_bundles(const fs::path& corpus, const fs::path& store,
+                                  const Resources& resources, int threads) {
+    ReindexRequest asked = request(corpus, store, resources, threads);
+    asked.options.pose_clusters = {};
+    asked.options.partition.rule = PartitionRule::subject;
+    asked.only = {"frames",         "features", "pose_clusters",
+                  "motion_strings", "bundles",  "bundle_graph"};
+    return asked;
+}
+
 /// Stages in table order, each made from nothing.
 using StageTimes = std::vector<Least>;
 
-void time_stages(const fs::path& corpus, const fs::path& store, const Resources& resources,
-                 int threads, StageTimes& times) {
-    fs::remove_all(store);
-    const RunSummary summary = reindex(request(corpus, store, resources, threads), Log(), {});
+void time_stages(const ReindexRequest& asked, StageTimes& times) {
+    fs::remove_all(asked.store);
+    const RunSummary summary = reindex(asked, Log(), {});
     times.resize(summary.stages.size());
     for (size_t i = 0; i < times.size(); ++i) {
         times[i].enter(summary.stages[i].cost.seconds, summary.stages[i].cost.cpu_seconds);
@@ -190,6 +200,16 @@ ClusterRates measure_mixture(const MatrixF& all_rows, int64_t clusters, int turn
             .letter_nanoseconds_per_row = nanoseconds(letters.cpu, count)};
 }
 
+/// More clusters never cost less, though the clock may say so where they take next to no time.
+ClusterRates no_less(ClusterRates rates, const ClusterRates& fewer) {
+    for (const auto part :
+         {&ClusterRates::start_nanoseconds_per_row, &ClusterRates::iteration_nanoseconds_per_row,
+          &ClusterRates::letter_nanoseconds_per_row}) {
+        rates.*part = std::max(rates.*part, fewer.*part);
+    }
+    return rates;
+}
+
 double measure_serial_share(const MatrixRows& rows, int turns, int threads) {
     constexpr int64_t clusters = 1000;
     const Mixture model = start_mixture(rows, clusters, {}, 0, threads);
@@ -267,11 +287,19 @@ Rates measure(const Options& options) {
     generate_corpus({.frames = options.frames}, folder / "takes", resources.threads);
     generate_corpus({.frames = 100, .subjects = 1}, folder / "take", resources.threads);
 
-    StageTimes one, all, empty;
+    StageTimes one, all, empty, bundles_of_one, bundles_of_all;
+    const int threads = resources.threads;
     for (int turn = 0; turn < options.turns; ++turn) {
-        time_stages(folder / "take", folder / "store", resources, 1, empty);
-        time_stages(folder / "takes", folder / "store", resources, resources.threads, all);
-        time_stages(folder / "takes", folder / "store", resources, 1, one);
+        const fs::path store = folder / "store", takes = folder / "takes";
+        time_stages(request_of_bundles(takes, store, resources, 1), bundles_of_one);
+        time_stages(request_of_bundles(takes, store, resources, threads), bundles_of_all);
+        time_stages(request(folder / "take", store, resources, 1), empty);
+        time_stages(request(takes, store, resources, threads), all);
+        time_stages(request(takes, store, resources, 1), one);
+    }
+    for (const StageNumber stage : {bundles_stage, bundle_graph_stage}) {
+        one[stage] = bundles_of_one[stage];
+        all[stage] = bundles_of_all[stage];
     }
     const OpenStore opened(folder / "store");
     const int64_t count = opened.generation.catalog().frames();
@@ -282,14 +310,14 @@ Rates measure(const Options& options) {
         rates.seconds_per_file = empty[stage].wall;
         rates.nanoseconds_per_value =
             std::max(0.0, one[stage].cpu - files * empty[stage].cpu - elsewhere) * 1e9 / values;
-        rates.serial_share = serial_share(one[stage].wall, all[stage].wall, resources.threads);
+        rates.serial_share = serial_share(one[stage].wall, all[stage].wall, threads);
         return rates;
     };
     const ClassShape shape;  // of the generated corpus too
     Rates rates;
     rates.machine = processor();
     rates.version = opened.generation.ledger().version;
-    rates.threads = resources.threads;
+    rates.threads = threads;
     const FeatureOptions features;
     const auto frames = static_cast<double>(count);
     rates.frames = shard_rates(frames_stage, frames * values_of_frames(shape));
@@ -321,10 +349,12 @@ Rates measure(const Options& options) {
         std::max(0.0, per_row(pose_clusters_stage) - poses.projection_nanoseconds_per_row);
     poses.accessibility_nanoseconds_per_pair =
         measure_accessibility(MatrixRows(rows), options.turns);
-    poses.serial_share = measure_serial_share(MatrixRows(rows), options.turns, resources.threads);
+    poses.serial_share = measure_serial_share(MatrixRows(rows), options.turns, threads);
     for (const int64_t clusters : {30, 100, 300, 1000, 3000, 8000}) {
         if (clusters > rows.rows()) break;
-        poses.by_clusters.push_back(measure_mixture(rows, clusters, options.turns));
+        const ClusterRates measured = measure_mixture(rows, clusters, options.turns);
+        const ClusterRates& fewer = poses.by_clusters.empty() ? measured : poses.by_clusters.back();
+        poses.by_clusters.push_back(no_less(measured, fewer));
     }
     return rates;
 }
