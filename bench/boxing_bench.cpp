@@ -98,6 +98,10 @@ struct Punching {
     std::array<int64_t, 2> frames{};
 
     int64_t of_punches() const { return frames[0] + frames[1]; }
+    size_t side() const { return frames[1] > frames[0] ? 1 : 0; }
+    std::string text() const {
+        return fmt::format("{}x{:.0f} {}", height, width, side_names[side()]);
+    }
 };
 
 std::vector<Punching> punching(const MotionString& string,
@@ -120,19 +124,33 @@ std::vector<Punching> punching(const MotionString& string,
     return all;
 }
 
-/// Those that punches fill by a third or more, the most punching first: "12x30 right".
-std::string largest(std::vector<Punching> all) {
+/// Those that punches fill by a third or more, the most punching first.
+std::vector<Punching> of_punches(std::vector<Punching> all) {
     std::erase_if(all, [](const Punching& one) {
         return 3 * one.of_punches() < static_cast<double>(one.height) * one.width;
     });
     std::ranges::stable_sort(all, std::ranges::greater(), &Punching::of_punches);
+    return all;
+}
+
+/// The first four: " 12x30 right 4x22 left".
+std::string largest(const std::vector<Punching>& all) {
     std::string text;
-    for (size_t i = 0; i < std::min<size_t>(all.size(), 4); ++i) {
-        const int side = all[i].frames[1] > all[i].frames[0];
-        text += fmt::format(" {}x{:.0f} {}", all[i].height, all[i].width, side_names[size_t(side)]);
-    }
+    for (size_t i = 0; i < std::min<size_t>(all.size(), 4); ++i) text += " " + all[i].text();
     return text;
 }
+
+/// Of several starts' bundles the most punching of either side.
+struct Best {
+    std::array<Punching, 2> of_sides;
+
+    void consider(const std::vector<Punching>& all) {
+        for (const Punching& one : all) {
+            Punching& best = of_sides[one.side()];
+            if (one.of_punches() > best.of_punches()) best = one;
+        }
+    }
+};
 
 struct Settings {
     const char* name;
@@ -148,17 +166,22 @@ void print(const Options& options) {
                sides.punches[0].size(), sides.punches[1].size());
     fmt::print(
         "mixed: of the punches' frames in bundles, those on the side that fewer of their\n"
-        "bundle's are on; mean and most of {} starts of EM; bundles of the first\n",
+        "bundle's are on; mean and most of {} starts of EM; of all starts the two bundles with\n"
+        "most frames of punches, and those of the first\n",
         options.starts);
-    fmt::print("options kappa frames/cluster  mixed   most cover.  bundles that are punches\n");
-    const std::array<Settings, 3> all = {
+    fmt::print(
+        "options         kappa frames/cluster  mixed   most cover. left         right         "
+        "bundles that are punches\n");
+    const std::array<Settings, 4> all = {
         {{"default", {}, {}},
          {"depth:2", {.depth = 2}, {}},
+         {"S1's τ, depth:2", {.depth = 2, .step_quantile = 1}, {.tau_quantile = 0.5}},
          {"paper", {.spread = BundleSpread::closure, .step_quantile = 1}, {.tau_quantile = 0.5}}}};
     for (const Settings& settings : all) {
         for (const int64_t clusters : {500, 250, 175, 100, 75, 50, 25, 12}) {
             double mean = 0, most = 0, coverage = 0;
             std::string bundles_of_first;
+            Best best;
             for (int start = 1; start <= options.starts; ++start) {
                 PoseClusterOptions poses;
                 poses.clusters = clusters;
@@ -180,11 +203,15 @@ void print(const Options& options) {
                 most = std::max(most, share);
                 coverage +=
                     static_cast<double>(covered) / static_cast<double>(frames) / options.starts;
-                if (start == 1) bundles_of_first = largest(found);
+                const auto punches = of_punches(found);
+                if (start == 1) bundles_of_first = largest(punches);
+                best.consider(punches);
             }
-            fmt::print("{:<7} {:>5} {:>14.0f} {:>6.3f} {:>6.3f} {:>6.3f} {}\n", settings.name,
-                       clusters, static_cast<double>(clip.frames()) / static_cast<double>(clusters),
-                       mean, most, coverage, bundles_of_first);
+            fmt::print("{:<15} {:>5} {:>14.0f} {:>6.3f} {:>6.3f} {:>6.3f} {:<12} {:<12} {}\n",
+                       settings.name, clusters,
+                       static_cast<double>(clip.frames()) / static_cast<double>(clusters), mean,
+                       most, coverage, best.of_sides[0].text(), best.of_sides[1].text(),
+                       bundles_of_first);
             std::fflush(stdout);
         }
     }

@@ -213,7 +213,53 @@ struct KnownSet {
     bool noise = false;
 };
 
-/// Sets whose bundles S1 §5 describes, or is likely to: structure, graph, milliseconds.
+/// Structure, graph, milliseconds of one start of EM.
+void describe(const KnownSet& set, const bench::PoseTakes& takes, uint64_t start,
+              const Options& options) {
+    PoseClusterOptions clusters;
+    clusters.clusters = set.clusters;
+    clusters.mixture.seed = start;
+    const bench::SpelledTakes spelled(takes, clusters, options.threads);
+    Setting setting = options.setting;
+    setting.bundles.rho = set.rho;
+    std::vector<double> seconds;
+    Found found;
+    for (int turn = 0; turn < 9; ++turn) {
+        found = find(spelled, setting, 1);
+        seconds.push_back(found.seconds);
+    }
+    // Each take is a class of its own: a bundle is mixed if it is not pure.
+    std::vector<FrameClasses> classes;
+    for (size_t i = 0; i < takes.frames.size(); ++i)
+        classes.emplace_back(static_cast<size_t>(takes.frames[i]), static_cast<int32_t>(i));
+    const BundleScore one = score(spelled.string, found.bundles, classes);
+    std::vector<int32_t> node_of, f;
+    int32_t nodes = 0;
+    for (const SubstringBundle& bundle : found.bundles)
+        node_of.push_back(bundle.is_degenerate() ? -1 : nodes++);
+    for (int64_t j = 0; j < spelled.string.size(); ++j)
+        f.push_back(static_cast<int32_t>(spelled.string.mean_frame(j)));
+    BundleGraph graph;
+    const double graph_seconds =
+        bench::cost_of([&] {
+            graph = bundle_graph(bundle_members(spelled.string, found.bundles, f), node_of, nodes,
+                                 takes.frames);
+        }).wall;
+    size_t strong = 0;
+    for (const auto& component : strong_components(graph.graph).nodes)
+        strong = std::max(strong, component.size());
+    fmt::print(
+        "{:<14} {:>5} {:>3} {:>5} {:>5} {:>6} {:>3} {:>7} {:>6} {:>7} {:>6.2f} {:>5.3f} {:>5} "
+        "{:>5} {:>6} "
+        "{:>4} {:>5.1f} {:>5.2f} {}\n",
+        name_of(set.takes), set.clusters, set.rho, set.noise ? "0.1" : "-", start,
+        takes.poses.rows(), spelled.projected.cols(), spelled.string.size(), spelled.lambda,
+        one.bundles, one.coverage, 1 - one.purity, graph.graph.nodes(), graph.graph.edges(), strong,
+        weak_components(graph.graph), 1e3 * bench::median(seconds), 1e3 * graph_seconds,
+        largest_of(spelled.string, found.bundles));
+}
+
+/// Sets whose bundles S1 §5 describes, or is likely to.
 void describe_known_takes(const Options& options) {
     const std::vector<KnownSet> sets = {{{"02_05"}, 80, 1},           {{"02_05"}, 80, 2},
                                         {{"02_05"}, 80, 1, true},     {{"03_03"}, 200, 1},
@@ -221,49 +267,13 @@ void describe_known_takes(const Options& options) {
                                         {{"14_02"}, 250, 2},          {{"14_02"}, 250, 1, true},
                                         {{"02_05", "03_03"}, 250, 1}, {{"13_29", "13_30"}, 250, 1}};
     fmt::print(
-        "takes          kappa rho noise frames letters bundles cover. mixed nodes edges strong "
-        "weak    ms graph  largest\n");
+        "takes          kappa rho noise start frames PCs letters lambda bundles cover. mixed nodes "
+        "edges strong weak    ms graph  largest\n");
     for (const KnownSet& set : sets) {
         auto takes = bench::PoseTakes::read(options.corpus, set.takes);
         if (set.noise) add_noise(takes);
-        PoseClusterOptions clusters;
-        clusters.clusters = set.clusters;
-        const bench::SpelledTakes spelled(takes, clusters, options.threads);
-        Setting setting = options.setting;
-        setting.bundles.rho = set.rho;
-        std::vector<double> seconds;
-        Found found;
-        for (int turn = 0; turn < 9; ++turn) {
-            found = find(spelled, setting, 1);
-            seconds.push_back(found.seconds);
-        }
-        // Each take is a class of its own: a bundle is mixed if it is not pure.
-        std::vector<FrameClasses> classes;
-        for (size_t i = 0; i < takes.frames.size(); ++i)
-            classes.emplace_back(static_cast<size_t>(takes.frames[i]), static_cast<int32_t>(i));
-        const BundleScore one = score(spelled.string, found.bundles, classes);
-        std::vector<int32_t> node_of, f;
-        int32_t nodes = 0;
-        for (const SubstringBundle& bundle : found.bundles)
-            node_of.push_back(bundle.is_degenerate() ? -1 : nodes++);
-        for (int64_t j = 0; j < spelled.string.size(); ++j)
-            f.push_back(static_cast<int32_t>(spelled.string.mean_frame(j)));
-        BundleGraph graph;
-        const double graph_seconds =
-            bench::cost_of([&] {
-                graph = bundle_graph(bundle_members(spelled.string, found.bundles, f), node_of,
-                                     nodes, takes.frames);
-            }).wall;
-        size_t strong = 0;
-        for (const auto& component : strong_components(graph.graph).nodes)
-            strong = std::max(strong, component.size());
-        fmt::print(
-            "{:<14} {:>5} {:>3} {:>5} {:>6} {:>7} {:>7} {:>6.2f} {:>5.3f} {:>5} {:>5} {:>6} "
-            "{:>4} {:>5.1f} {:>5.2f} {}\n",
-            name_of(set.takes), set.clusters, set.rho, set.noise ? "0.1" : "-", takes.poses.rows(),
-            spelled.string.size(), one.bundles, one.coverage, 1 - one.purity, graph.graph.nodes(),
-            graph.graph.edges(), strong, weak_components(graph.graph), 1e3 * bench::median(seconds),
-            1e3 * graph_seconds, largest_of(spelled.string, found.bundles));
+        for (int start = 1; start <= options.starts; ++start)
+            describe(set, takes, static_cast<uint64_t>(start), options);
     }
 }
 
