@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "disjoint_sets.h"
-#include "kinetome/base/parallel.h"
 #include "member_agreement.h"
 #include "member_metric.h"
+#include "shared_items.h"
 
 namespace kinetome {
 namespace {
@@ -96,28 +96,29 @@ MatrixF measured(const MatrixFView& rows, const Speakers& speakers) {
 class Linking {
   public:
     Linking(const MatrixFView& rows, Speakers speakers, const BundleLinkOptions& options,
-            int threads)
+            const Workers& workers)
         : speakers_(std::move(speakers)),
           members_(measured(rows, speakers_), speakers_.occurrences, options),
           options_(options),
-          threads_(threads),
+          workers_(workers),
           kinds_(count()) {}
 
     BundleLinks link() {
         BundleLinks result;
         find_usual();
         result.usual_cost = usual_cost_;
-        unite_kinds();
+        if (usual_cost_ > 0) compare();
         result.kind_of = kinds_by_bundle();
-        if (usual_cost_ > 0) result.links = links();
+        result.links = links();
         return result;
     }
 
   private:
+    /// A bundle of another body, and how far it is.
     struct Near {
         int32_t subject = 0;
-        int32_t bundle = -1;  ///< none yet
-        double cost = infinite;
+        int32_t bundle = 0;
+        double distance = infinite;
     };
 
     struct Candidate {
@@ -127,6 +128,8 @@ class Linking {
         auto operator<=>(const Candidate&) const = default;
     };
 
+    using Pair = std::pair<int32_t, int32_t>;
+
     int64_t count() const { return static_cast<int64_t>(speakers_.bundles.size()); }
     int32_t subject(int32_t bundle) const {
         return speakers_.subject_of[static_cast<size_t>(bundle)];
@@ -134,87 +137,128 @@ class Linking {
     const std::vector<size_t>& members(int32_t bundle) const {
         return speakers_.of_bundle[static_cast<size_t>(bundle)];
     }
+    double reach() const { return options_.reach * usual_cost_; }
+
+    /// Of each member the least cost to another of its bundle.
+    std::vector<double> own_costs(int32_t bundle) const {
+        std::vector<double> costs;
+        for (const size_t from : members(bundle)) {
+            double best = infinite;
+            for (const size_t to : members(bundle)) {
+                if (!members_.share_surroundings(from, to))
+                    best = std::min(best, members_.find(from, to, infinite).cost);
+            }
+            if (best < infinite) costs.push_back(best);
+        }
+        return costs;
+    }
 
     void find_usual() {
-        const auto bundles = static_cast<size_t>(count());
-        std::vector<std::vector<double>> of_bundle(bundles);
-        parallel_for(threads_, count(), [&](int64_t b) {
-            const auto& own = members(static_cast<int32_t>(b));
-            for (const size_t from : own) {
-                double best = infinite;
-                for (const size_t to : own) {
-                    if (members_.share_surroundings(from, to)) continue;
-                    best = std::min(best, members_.find(from, to, best).cost);
-                }
-                if (best < infinite) of_bundle[static_cast<size_t>(b)].push_back(best);
-            }
-        });
         std::vector<double> costs;
-        for (const auto& own : of_bundle) costs.insert(costs.end(), own.begin(), own.end());
+        for (const auto& own : shared_items<std::vector<double>>(
+                 count(), workers_,
+                 [&](int64_t bundle) { return own_costs(static_cast<int32_t>(bundle)); }))
+            costs.insert(costs.end(), own.begin(), own.end());
         usual_cost_ = median(std::move(costs));
     }
 
-    /// How far the middle of a member of the one is from the nearest of the other.
+    /// How far the middle of a member of the one is from the nearest of the other, if within reach.
     double glances(int32_t from, int32_t to) const {
         double least = infinite;
         for (const size_t i : members(from)) {
-            for (const size_t j : members(to)) least = std::min(least, members_.glance(i, j));
+            for (const size_t j : members(to)) {
+                if (members_.glance_bound(i, j) <= std::min(least, reach()))
+                    least = std::min(least, members_.glance(i, j));
+            }
         }
         return least;
     }
 
-    /// How far the one is from the other, by the members that are nearest.
-    double way(int32_t from, int32_t to, double at_most) const {
-        const double reach = options_.reach * usual_cost_;
-        double least = infinite;
-        for (const size_t a : members(from)) {
-            for (const size_t b : members(to)) {
-                if (members_.glance(a, b) > reach) continue;
-                const Agreement found = members_.find(a, b, reach);
-                if (found.cost > reach) continue;
-                least = std::min(least, found.cost / usual_cost_ * found.unlikeness);
-            }
-        }
-        return least <= at_most ? least : infinite;
-    }
-
-    /// How far apart two bundles are that agree; infinite when they do not, or not within at_most.
-    double distance(int32_t a, int32_t b, double at_most) const {
-        const double there = way(a, b, at_most);
-        return there == infinite ? infinite : std::max(there, way(b, a, at_most));
-    }
-
-    /// Of each subject the bundles that look nearest, within reach, by subject and nearness.
-    template <class Wanted>
-    std::vector<Candidate> candidates(int32_t a, double reach, const Wanted& wanted) const {
+    /// Of each body the bundles that look nearest, within reach.
+    std::vector<int32_t> candidates(int32_t a) const {
         std::vector<Candidate> all;
         for (int32_t b = 0; b < count(); ++b) {
-            if (b == a || !wanted(subject(b))) continue;
+            if (b == a) continue;
             const double there = glances(a, b);
-            if (there > reach) continue;
+            if (there > reach()) continue;
             const double glance = std::max(there, glances(b, a));
-            if (glance <= reach) all.push_back({subject(b), glance, b});
+            if (glance <= reach()) all.push_back({subject(b), glance, b});
         }
         std::ranges::sort(all);
-        std::vector<Candidate> nearest;
+        std::vector<int32_t> nearest;
         int64_t of_subject = 0;
-        for (const Candidate& one : all) {
-            if (nearest.empty() || nearest.back().subject != one.subject) of_subject = 0;
-            if (of_subject++ < options_.candidates) nearest.push_back(one);
+        for (size_t i = 0; i < all.size(); ++i) {
+            of_subject = i > 0 && all[i - 1].subject == all[i].subject ? of_subject + 1 : 0;
+            if (of_subject < options_.candidates) nearest.push_back(all[i].bundle);
         }
         return nearest;
     }
 
-    void unite_kinds() {
-        const double reach = options_.reach * usual_cost_;
-        parallel_for(threads_, count(), [&](int64_t i) {
-            const auto a = static_cast<int32_t>(i);
-            const auto own = [&](int32_t other) { return other == subject(a); };
-            for (const Candidate& one : candidates(a, reach, own)) {
-                if (kinds_.together(a, one.bundle)) continue;
-                if (distance(a, one.bundle, farthest) <= farthest) kinds_.unite(a, one.bundle);
+    /// Pairs of which either is a candidate of the other.
+    std::vector<Pair> compared_pairs() const {
+        const auto candidates_of = shared_items<std::vector<int32_t>>(
+            count(), workers_,
+            [&](int64_t bundle) { return candidates(static_cast<int32_t>(bundle)); });
+        std::vector<Pair> pairs;
+        for (int32_t a = 0; a < count(); ++a) {
+            for (const int32_t b : candidates_of[static_cast<size_t>(a)])
+                pairs.emplace_back(std::minmax(a, b));
+        }
+        std::ranges::sort(pairs);
+        const auto repeated = std::ranges::unique(pairs);
+        pairs.erase(repeated.begin(), repeated.end());
+        return pairs;
+    }
+
+    /// How far the one is from the other, by the members that are nearest.
+    double way(int32_t from, int32_t to) const {
+        double least = infinite;
+        for (const size_t a : members(from)) {
+            for (const size_t b : members(to)) {
+                if (members_.glance_bound(a, b) > reach() || members_.glance(a, b) > reach())
+                    continue;
+                const Agreement found = members_.find(a, b, reach());
+                if (found.cost <= reach())
+                    least = std::min(least, found.cost / usual_cost_ * found.unlikeness);
             }
-        });
+        }
+        return least;
+    }
+
+    /// How far apart two bundles are, both ways; infinite when they do not agree.
+    double distance(const Pair& pair) const {
+        const double there = way(pair.first, pair.second);
+        if (there > farthest) return infinite;
+        const double both = std::max(there, way(pair.second, pair.first));
+        return both > farthest ? infinite : both;
+    }
+
+    /// Unites kinds of motion, and finds the nearest bundle of each other body, by subject.
+    void compare() {
+        const std::vector<Pair> pairs = compared_pairs();
+        const auto distances = shared_items<double>(
+            static_cast<int64_t>(pairs.size()), workers_,
+            [&](int64_t pair) { return distance(pairs[static_cast<size_t>(pair)]); });
+        near_.resize(static_cast<size_t>(count()));
+        for (size_t i = 0; i < pairs.size(); ++i) {
+            const auto [a, b] = pairs[i];
+            if (distances[i] == infinite) continue;
+            if (subject(a) == subject(b)) {
+                kinds_.unite(a, b);
+            } else {
+                keep_nearest(near_[static_cast<size_t>(a)], {subject(b), b, distances[i]});
+                keep_nearest(near_[static_cast<size_t>(b)], {subject(a), a, distances[i]});
+            }
+        }
+    }
+
+    /// Of equally near ones the lower.
+    static void keep_nearest(std::vector<Near>& near, const Near& one) {
+        const auto place = std::ranges::lower_bound(near, one.subject, {}, &Near::subject);
+        if (place == near.end() || place->subject != one.subject)
+            near.insert(place, one);
+        else if (std::pair(one.distance, one.bundle) < std::pair(place->distance, place->bundle))
+            *place = one;
     }
 
     std::vector<int32_t> kinds_by_bundle() {
@@ -227,44 +271,21 @@ class Linking {
         return kinds;
     }
 
-    /// The nearest bundle of each other body that agrees with one, by subject.
-    std::vector<Near> nearest(int32_t a) const {
-        const double reach = options_.reach * usual_cost_;
-        const auto others = [&](int32_t other) { return other != subject(a); };
-        std::vector<Near> near;
-        // What looks nearest comes first, so that the others can be given up soon.
-        for (const Candidate& one : candidates(a, reach, others)) {
-            if (near.empty() || near.back().subject != one.subject)
-                near.push_back({.subject = one.subject});
-            Near& best = near.back();
-            const double cost = distance(a, one.bundle, std::min(farthest, best.cost));
-            if (std::pair(cost, one.bundle) < std::pair(best.cost, best.bundle))
-                best = {one.subject, one.bundle, cost};
-        }
-        std::erase_if(near, [](const Near& one) { return one.bundle < 0; });
-        return near;
-    }
-
     std::vector<BundleLink> links() {
-        std::vector<std::vector<Near>> near(static_cast<size_t>(count()));
-        parallel_for(threads_, count(), [&](int64_t a) {
-            near[static_cast<size_t>(a)] = nearest(static_cast<int32_t>(a));
-        });
-        std::map<std::pair<int32_t, int32_t>, double> linked;
-        for (int32_t a = 0; a < count(); ++a) {
-            for (const Near& other : near[static_cast<size_t>(a)]) {
-                const auto& back = near[static_cast<size_t>(other.bundle)];
-                const auto own = std::ranges::lower_bound(back, subject(a), {}, &Near::subject);
-                // Nothing that is nearer where others look nearer than this one.
-                const bool none = own == back.end() || own->subject != subject(a);
-                if (none || own->cost >= other.cost || kinds_.together(own->bundle, a))
-                    linked[std::minmax(a, other.bundle)] = other.cost;
+        std::map<Pair, double> linked;
+        for (int32_t a = 0; a < static_cast<int32_t>(near_.size()); ++a) {
+            for (const Near& other : near_[static_cast<size_t>(a)]) {
+                // The other has this one near, so that it has a nearest of this one's body.
+                const Near& own = *std::ranges::lower_bound(
+                    near_[static_cast<size_t>(other.bundle)], subject(a), {}, &Near::subject);
+                if (own.distance >= other.distance || kinds_.together(own.bundle, a))
+                    linked[std::minmax(a, other.bundle)] = other.distance;
             }
         }
         std::vector<BundleLink> links;
-        for (const auto& [pair, cost] : linked) {
+        for (const auto& [pair, distance] : linked) {
             links.push_back({speakers_.bundles[static_cast<size_t>(pair.first)],
-                             speakers_.bundles[static_cast<size_t>(pair.second)], cost});
+                             speakers_.bundles[static_cast<size_t>(pair.second)], distance});
         }
         return links;
     }
@@ -272,8 +293,9 @@ class Linking {
     Speakers speakers_;
     MemberAgreement members_;
     BundleLinkOptions options_;
-    int threads_;
+    Workers workers_;
     DisjointSets kinds_;
+    std::vector<std::vector<Near>> near_;  ///< by bundle
     double usual_cost_ = 0;
 };
 
@@ -281,10 +303,10 @@ class Linking {
 
 BundleLinks link_bundles(const MatrixFView& rows, std::span<const RowRange> clips,
                          std::span<const BundleMember> members, std::span<const int32_t> subject_of,
-                         const BundleLinkOptions& options, int threads) {
+                         const BundleLinkOptions& options, const Workers& workers) {
     check(rows, clips, members, subject_of, options);
     if (members.empty()) return {};
-    return Linking(rows, speakers_of(clips, members, subject_of, options), options, threads).link();
+    return Linking(rows, speakers_of(clips, members, subject_of, options), options, workers).link();
 }
 
 }  // namespace kinetome

@@ -12,6 +12,9 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 /// Of the surroundings asked for, where clips are short.
 constexpr double least_share = 0.6;
 
+/// Distances worked out at once; so many columns more than there are rows may be read.
+constexpr int64_t lanes = 16;
+
 /// How far surroundings reach to either side of a middle.
 struct Reach {
     int64_t before = 0, after = 0;
@@ -36,10 +39,11 @@ struct Answer {
 /// one that the path goes on by from there (WarpWeight::first).
 class OutwardPaths {
   public:
-    /// `columns` are the rows, an axis after the other; `others` what the middle may answer, `clip`
-    /// those rows' own; `direction` is 1 or -1. Given up when all paths cost more than `hopeless`.
+    /// `columns` are the rows, an axis after the other, and some to spare; `others` what the middle
+    /// may answer, `clip` those rows' own; `direction` is 1 or -1. Given up when all paths cost
+    /// more than `at_most` in the mean.
     OutwardPaths(const MatrixF& columns, int64_t middle, int64_t length, int direction,
-                 const RowRange& others, const RowRange& clip, float hopeless)
+                 const RowRange& others, const RowRange& clip, double at_most)
         : columns_(columns),
           middle_(middle),
           length_(length),
@@ -48,8 +52,9 @@ class OutwardPaths {
           origin_(direction > 0 ? others.first : others.end - 1),
           count_(std::min(answers_ + 2 * length,
                           direction > 0 ? clip.end - origin_ : origin_ + 1 - clip.first)),
-          distances_(length + 1, count_),
+          distances_(length + 1, count_ + lanes),
           totals_(Totals::Constant(length + 1, count_ + longest_step, infinite)) {
+        const auto hopeless = static_cast<float>(at_most * static_cast<double>(length + 1));
         for (int64_t i = length; i >= 0 && alive_; --i) alive_ = come_to(i) <= hopeless;
     }
 
@@ -75,6 +80,7 @@ class OutwardPaths {
 
   private:
     using Totals = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using Lanes = Eigen::Array<float, 1, lanes>;
     static constexpr int64_t longest_step = 2;
 
     /// Adds row i; what the cheapest path costs that comes through it or passes over it.
@@ -82,15 +88,17 @@ class OutwardPaths {
         const int64_t first = (i + 1) / 2;
         const int64_t size = std::min(count_, answers_ + 2 * i) - first;
         if (size <= 0) return infinite;
-        auto here = distances_.row(i).segment(first, size);
-        here.setZero();
         const int64_t begin = direction_ > 0 ? origin_ + first : origin_ - first - size + 1;
-        for (Eigen::Index axis = 0; axis < columns_.rows(); ++axis) {
-            here += (columns_.row(axis).segment(begin, size).array() -
-                     columns_(axis, middle_ + direction_ * i))
-                        .square();
+        const auto middle = columns_.col(middle_ + direction_ * i);
+        for (int64_t done = 0; done < size; done += lanes) {
+            Lanes sum = Lanes::Zero();
+            for (Eigen::Index axis = 0; axis < columns_.rows(); ++axis) {
+                sum += (columns_.row(axis).segment<lanes>(begin + done).array() - middle[axis])
+                           .square();
+            }
+            distances_.row(i).segment<lanes>(first + done) = sum.sqrt();
         }
-        here = here.sqrt();
+        auto here = distances_.row(i).segment(first, size);
         if (direction_ < 0) here.reverseInPlace();
         auto total = totals_.row(i).segment(first, size);
         if (i == length_) {
@@ -101,7 +109,8 @@ class OutwardPaths {
         total = onward.segment(first + 1, size).min(onward.segment(first + 2, size)) + here;
         if (i + 2 <= length_)
             total = total.min(totals_.row(i + 2).segment(first + 1, size) + 2 * here);
-        return std::min(total.minCoeff(), onward.minCoeff());
+        // Only the middle cannot be passed over.
+        return i == 0 ? total.minCoeff() : std::min(total.minCoeff(), onward.minCoeff());
     }
 
     const MatrixF& columns_;
@@ -136,9 +145,20 @@ double unlikeness(const MatrixF& rows, const std::vector<Answer>& answers) {
 MemberAgreement::MemberAgreement(MatrixF rows, std::vector<Occurrence> occurrences,
                                  const BundleLinkOptions& options)
     : rows_(std::move(rows)),
-      columns_(rows_.transpose()),
+      columns_(MatrixF::Zero(rows_.cols(), rows_.rows() + lanes)),
       occurrences_(std::move(occurrences)),
-      options_(options) {}
+      options_(options) {
+    columns_.leftCols(rows_.rows()) = rows_.transpose();
+    const auto count = static_cast<Eigen::Index>(occurrences_.size());
+    centres_.resize(count, rows_.cols());
+    radii_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const RowRange range = answers(static_cast<size_t>(i));
+        const auto all = rows_.middleRows(range.first, range.size());
+        centres_.row(i) = all.colwise().mean();
+        radii_[i] = (all.rowwise() - centres_.row(i)).rowwise().norm().maxCoeff();
+    }
+}
 
 bool MemberAgreement::share_surroundings(size_t a, size_t b) const {
     return std::abs(occurrences_[a].middle() - occurrences_[b].middle()) < options_.surroundings;
@@ -159,6 +179,15 @@ double MemberAgreement::glance(size_t from, size_t to) const {
     return std::sqrt(static_cast<double>(least));
 }
 
+double MemberAgreement::glance_bound(size_t from, size_t to) const {
+    constexpr double rounding = 1e-5;  // relative, of sums of floats
+    const auto centre = centres_.row(static_cast<Eigen::Index>(to));
+    const auto distance =
+        static_cast<double>((rows_.row(occurrences_[from].middle()) - centre).norm());
+    const auto radius = static_cast<double>(radii_[static_cast<Eigen::Index>(to)]);
+    return distance * (1 - rounding) - radius * (1 + rounding);
+}
+
 Agreement MemberAgreement::find(size_t from, size_t to, double at_most) const {
     const Occurrence &one = occurrences_[from], &other = occurrences_[to];
     const Reach reach =
@@ -168,13 +197,11 @@ Agreement MemberAgreement::find(size_t from, size_t to, double at_most) const {
     if (static_cast<double>(reach.rows()) <
         least_share * static_cast<double>(options_.surroundings))
         return {};
-    const auto rows = static_cast<double>(reach.rows());
-    const auto hopeless = static_cast<float>(at_most * rows);
     const RowRange others = answers(to);
-    const OutwardPaths after(columns_, one.middle(), reach.after, 1, others, other.clip, hopeless);
+    const OutwardPaths after(columns_, one.middle(), reach.after, 1, others, other.clip, at_most);
     if (!after.alive()) return {};
     const OutwardPaths before(columns_, one.middle(), reach.before, -1, others, other.clip,
-                              hopeless);
+                              at_most);
     if (!before.alive()) return {};
     float least = infinite;
     int64_t answer = others.first;
@@ -185,7 +212,7 @@ Agreement MemberAgreement::find(size_t from, size_t to, double at_most) const {
         least = total;
         answer = row;
     }
-    const double cost = static_cast<double>(least) / rows;
+    const double cost = static_cast<double>(least) / static_cast<double>(reach.rows());
     if (!(cost <= at_most)) return {};
     std::vector<Answer> path{{one.middle(), answer}};
     after.trace(answer, path);

@@ -34,8 +34,12 @@ class MemberAgreement {
     /// How far the middle of the one is from the nearest row that it may answer in the other.
     double glance(size_t from, size_t to) const;
 
+    /// Never more than that, and sooner found.
+    double glance_bound(size_t from, size_t to) const;
+
     /// The cheapest path through the middle of the one and a row that it may answer in the other,
-    /// over the surroundings of the one, if it costs `at_most`; an infinite cost when none does.
+    /// over the surroundings of the one, if before and after the middle it costs `at_most` each; an
+    /// infinite cost when none does.
     Agreement find(size_t from, size_t to, double at_most) const;
 
     bool share_surroundings(size_t a, size_t b) const;
@@ -45,7 +49,9 @@ class MemberAgreement {
     RowRange answers(size_t to) const;
 
     MatrixF rows_;
-    MatrixF columns_;  ///< the same, an axis after the other
+    MatrixF columns_;  ///< the same, an axis after the other, and columns to spare
+    MatrixF centres_;  ///< by member, of the rows that may answer
+    VectorF radii_;    ///< about those
     std::vector<Occurrence> occurrences_;
     BundleLinkOptions options_;
 };

@@ -32,13 +32,13 @@ std::vector<BundleLink> between_nodes(std::vector<BundleLink> links,
 }  // namespace
 
 StageResult make_bundle_graph(const StageContext& context, const StageTask& task) {
-    StageResult result;
-    if (!context.is_root()) return result;
     const ArtifactReader input = context.workspace.open(*task.inputs_of("bundles").front());
     const StoredBundles bundles = read_bundles(input);
+    std::vector<BundleLink> links = link_subjects(context, task.inputs_of("frames"), bundles);
+    StageResult result;
+    if (!context.is_root()) return result;
     StoredBundleGraph graph = graph_of(bundles);
-    link_nodes(graph, between_nodes(link_subjects(context, task.inputs_of("frames"), bundles),
-                                    graph.node_of));
+    link_nodes(graph, between_nodes(std::move(links), graph.node_of));
     ArtifactWriter file(task.output, task.header, context.writing());
     write_bundle_graph(file, graph);
     const BundleGraphFrames& frames = graph.bundles.frames;

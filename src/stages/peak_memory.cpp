@@ -169,9 +169,10 @@ uint64_t bundle_bytes(const CorpusShape& corpus, const ReindexOptions& options,
     return largest + letters * sizeof(BundleMember);
 }
 
-/// Rows by which bundles of subjects are compared, as read and along their main axes.
-uint64_t link_bytes(const CorpusShape& corpus) {
-    constexpr uint64_t bytes_per_row = 2 * 99 * sizeof(float);
+/// Rows by which bundles of subjects are compared, as read and along their main axes, and as ranks
+/// tell each other of them.
+uint64_t link_bytes(const CorpusShape& corpus, int ranks) {
+    const uint64_t bytes_per_row = (ranks > 1 ? 4 : 2) * 99 * sizeof(float);
     uint64_t rows = 0;
     for (const ClipShape& clip : corpus.clips)
         rows += static_cast<uint64_t>(clip.frames_at(bundle_link_rate));
@@ -199,7 +200,7 @@ uint64_t peak_memory(const std::string& stage, const CorpusShape& corpus,
                         std::max(resources.memory_bytes, at_rest));
     }
     if (stage == "bundle_graph") {
-        return at_rest + bundle_bytes(corpus, options, resources) + link_bytes(corpus) +
+        return at_rest + bundle_bytes(corpus, options, resources) + link_bytes(corpus, ranks) +
                pipeline_bytes("features", corpus, options, resources);
     }
     if (stage == "bundles") return at_rest + bundle_bytes(corpus, options, resources);

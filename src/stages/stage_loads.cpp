@@ -198,7 +198,10 @@ StageLoad stage_load(const std::string& stage, const CorpusShape& corpus,
         ShardRates each = shard_rates(stage, rates);
         // What takes long there is to link the bundles of several.
         if (stage == "bundle_graph" && partitions.size() < 2) each.nanoseconds_per_value /= 500;
-        return load_of_bundles(each, partitions);
+        load = load_of_bundles(each, partitions);
+        // Bundles are linked by all ranks, whichever partition they are of.
+        load.shares_items = stage == "bundle_graph";
+        return load;
     }
     load.shares_items = true;
     if (stage == "pose_hierarchy") {

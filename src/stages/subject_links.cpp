@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clip_pipeline.h"
+#include "kinetome/base/packing.h"
 #include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/store/frame_store.h"
 
@@ -46,11 +47,14 @@ struct Passenger {
     MatrixF rows = {};
 };
 
-/// Rows of the clips that are wanted, by clip; none where the skeleton lacks a joint.
-std::vector<MatrixF> read_rows(const StageContext& context,
-                               const std::vector<const FinishedWork*>& frames,
-                               const std::map<std::string, size_t>& wanted, size_t clips) {
+/// Rows of those clips that it is this rank's turn to read, by clip; none where the skeleton lacks
+/// a joint.
+std::vector<MatrixF> read_own_rows(const StageContext& context,
+                                   const std::vector<const FinishedWork*>& frames,
+                                   const std::map<std::string, size_t>& wanted, size_t clips) {
     constexpr uint64_t bytes_per_frame = 2 * 1024;  // a frame and its positions, at two rates
+    const auto ranks = static_cast<size_t>(context.workers().rank_count());
+    const auto rank = static_cast<size_t>(context.workers().rank());
     std::vector<MatrixF> rows(clips);
     for (const FinishedWork* work : frames) {
         context.check_ranks();
@@ -62,7 +66,7 @@ std::vector<MatrixF> read_rows(const StageContext& context,
         const auto read = [&]() -> std::shared_ptr<Passenger> {
             for (; next < shard.clips().size(); ++next) {
                 const auto found = wanted.find(shard.clips()[next].name);
-                if (found != wanted.end())
+                if (found != wanted.end() && found->second % ranks == rank)
                     return std::make_shared<Passenger>(
                         Passenger{shard.read(next++), found->second});
             }
@@ -75,6 +79,25 @@ std::vector<MatrixF> read_rows(const StageContext& context,
         const auto keep = [&](Passenger& one) { rows[one.clip] = std::move(one.rows); };
         run_clip_pipeline<Passenger>(clips_in_flight(context.resources, largest), context.stop,
                                      read, compute, keep);
+    }
+    return rows;
+}
+
+/// Rows of the clips that are wanted, by clip, at every rank.
+std::vector<MatrixF> read_rows(const StageContext& context,
+                               const std::vector<const FinishedWork*>& frames,
+                               const std::map<std::string, size_t>& wanted, size_t clips) {
+    std::vector<MatrixF> rows = read_own_rows(context, frames, wanted, clips);
+    const auto ranks = static_cast<size_t>(context.workers().rank_count());
+    if (ranks == 1) return rows;
+    Packer mine;
+    for (size_t clip = static_cast<size_t>(context.workers().rank()); clip < clips; clip += ranks)
+        pack(mine, rows[clip]);
+    size_t first = 0;
+    for (std::string& bytes : context.ranks->gather_to_all(mine.take())) {
+        Unpacker in(std::move(bytes));
+        for (size_t clip = first; clip < clips; clip += ranks) unpack(in, rows[clip]);
+        ++first;
     }
     return rows;
 }
@@ -145,8 +168,8 @@ std::vector<BundleLink> link_subjects(const StageContext& context,
     std::vector<BundleLink> links;
     for (const auto& [name, clips] : classes) {
         const ComparedClips all = compared_clips(bundles, heights, partitions, clips, rows);
-        const auto found = link_bundles(all.rows, all.clips, all.members, all.subject_of, {},
-                                        context.resources.threads);
+        const auto found =
+            link_bundles(all.rows, all.clips, all.members, all.subject_of, {}, context.workers());
         links.insert(links.end(), found.links.begin(), found.links.end());
     }
     std::ranges::sort(links, {},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinetome/base/random.h"
+#include "support/thread_ranks.h"
 
 using namespace kinetome;
 
@@ -64,8 +65,8 @@ struct Performances {
             rows.col(column).segment(clips[clip].first, clip_rows).array() += by;
     }
 
-    BundleLinks link(int threads = 1, const BundleLinkOptions& options = {}) const {
-        return link_bundles(rows, clips, members, subject_of, options, threads);
+    BundleLinks link(const Workers& workers = 1, const BundleLinkOptions& options = {}) const {
+        return link_bundles(rows, clips, members, subject_of, options, workers);
     }
 };
 
@@ -167,7 +168,7 @@ TEST_CASE("bundles of one body are not linked with each other") {
     CHECK(links.links.empty());
 }
 
-TEST_CASE("links of bundles do not depend on threads or on the order of members") {
+TEST_CASE("links of bundles do not depend on threads, ranks or the order of members") {
     Performances performances;
     for (const int32_t subject : {0, 1, 2}) {
         performances.add(subject, {.column = 0}, 0.01 * subject, 3 * subject);
@@ -176,6 +177,14 @@ TEST_CASE("links of bundles do not depend on threads or on the order of members"
     const BundleLinks links = performances.link();
     CHECK(links.links.size() == 6);
     CHECK(performances.link(3).links == links.links);
+    for (const int count : {2, 5}) {
+        run_as_ranks(count, [&](Communicator& ranks) {
+            const BundleLinks shared = performances.link({1, &ranks});
+            // Of all ranks, each in its own thread: checked by the test's alone.
+            if (!(shared.links == links.links && shared.kind_of == links.kind_of))
+                throw std::logic_error("a rank links other bundles");
+        });
+    }
     std::ranges::reverse(performances.members);
     CHECK(performances.link(2).links == links.links);
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/base/matrix.h"
 #include "kinetome/base/pieces.h"
 #include "kinetome/models/bundle_graph.h"
@@ -52,14 +53,15 @@ struct BundleLinks {
 /// farther in proportion, up to `reach`. A left and a right punch are near, but share no movement.
 ///
 /// A bundle is compared with `candidates` of each body, those which look nearest by middles of
-/// members. Bundles of one body that agree, and those that agree with these, are one kind of
-/// motion. A bundle is linked with the nearest of each other body that agrees with it (ties: the
-/// lower one), unless that one is nearer to another kind of motion of the first's body: what that
-/// body does otherwise tells apart better than any distance between two bodies. The same for any
-/// number of threads. Throws std::invalid_argument when the lists disagree and for options that are
+/// members, and with those of which it is one. Bundles of one body that agree, and those that agree
+/// with these, are one kind of motion. A bundle is linked with the nearest of each other body that
+/// agrees with it (ties: the lower one), unless that one is nearer to another kind of motion of the
+/// first's body: what that body does otherwise tells apart better than any distance between two
+/// bodies. Every rank calls with the same; the result is the same at each, for any number of them
+/// and of threads. Throws std::invalid_argument when the lists disagree and for options that are
 /// not positive.
 BundleLinks link_bundles(const MatrixFView& rows, std::span<const RowRange> clips,
                          std::span<const BundleMember> members, std::span<const int32_t> subject_of,
-                         const BundleLinkOptions& options, int threads);
+                         const BundleLinkOptions& options, const Workers& workers);
 
 }  // namespace kinetome
