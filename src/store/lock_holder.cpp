@@ -10,11 +10,11 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 
 #include "kinetome/base/quote.h"
+#include "kinetome/store/json_text.h"
 
 namespace kinetome {
 namespace {
@@ -58,16 +58,29 @@ std::optional<ProcessStatus> status_of(pid_t process) {
     return fields ? std::optional(status) : std::nullopt;
 }
 
-nlohmann::ordered_json write_job(const SlurmJob& job) {
+Json write_job(const SlurmJob& job) {
     return {
         {"cluster", job.cluster}, {"job", job.id}, {"restarts", job.restarts}, {"user", job.user}};
 }
 
-SlurmJob parse_job(const nlohmann::json& json) {
+SlurmJob parse_job(const Json& json) {
     return {.cluster = json.at("cluster"),
             .id = json.at("job"),
             .restarts = json.at("restarts"),
             .user = json.at("user")};
+}
+
+LockHolder read_holder(const Json& json) {
+    LockHolder holder{.host = json.at("host"),
+                      .boot = json.at("boot"),
+                      .pid_namespace = json.at("pid_namespace"),
+                      .process = json.at("process"),
+                      .started = json.at("started"),
+                      .since = json.at("since"),
+                      .nonce = json.at("nonce"),
+                      .job = {}};
+    if (json.contains("slurm")) holder.job = parse_job(json.at("slurm"));
+    return holder;
 }
 
 bool is_out_of_sight(const LockHolder& holder, const LockHolder& here) {
@@ -96,31 +109,22 @@ LockHolder this_process() {
 }
 
 std::string write_holder(const LockHolder& holder) {
-    nlohmann::ordered_json json{{"host", holder.host},
-                                {"boot", holder.boot},
-                                {"pid_namespace", holder.pid_namespace},
-                                {"process", holder.process},
-                                {"started", holder.started},
-                                {"since", holder.since},
-                                {"nonce", holder.nonce}};
+    Json json{{"host", holder.host},
+              {"boot", holder.boot},
+              {"pid_namespace", holder.pid_namespace},
+              {"process", holder.process},
+              {"started", holder.started},
+              {"since", holder.since},
+              {"nonce", holder.nonce}};
     if (holder.job) json["slurm"] = write_job(*holder.job);
-    return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    return dump_json(json, -1);
 }
 
 std::optional<LockHolder> parse_holder(std::string_view text) {
+    const char* const what = "the holder of a lock";
     try {
-        const auto json = nlohmann::json::parse(text);
-        LockHolder holder{.host = json.at("host"),
-                          .boot = json.at("boot"),
-                          .pid_namespace = json.at("pid_namespace"),
-                          .process = json.at("process"),
-                          .started = json.at("started"),
-                          .since = json.at("since"),
-                          .nonce = json.at("nonce"),
-                          .job = {}};
-        if (json.contains("slurm")) holder.job = parse_job(json.at("slurm"));
-        return holder;
-    } catch (const nlohmann::json::exception&) {
+        return convert_json(parse_json(text, {}, what), {}, what, read_holder);
+    } catch (const DamagedError&) {
         return std::nullopt;
     }
 }
