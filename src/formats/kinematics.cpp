@@ -1,5 +1,6 @@
 #include "kinetome/formats/kinematics.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -22,17 +23,34 @@ void turn_about(Eigen::Matrix3d& matrix, int axis, double angle) {
 }
 
 /// matrix · (product of the rotations among the joint's channels). The rotation that acts last
-/// stands leftmost in the product, so it is the first to be multiplied from the right.
-void turn_by_channels(Eigen::Matrix3d& matrix, const Joint& joint, const float* dofs) {
+/// stands leftmost in the product, so it is the first to be multiplied from the right. `motions`
+/// is null, or gets the axes of the turns, one a channel.
+void turn_by_channels(Eigen::Matrix3d& matrix, const Joint& joint, const float* dofs,
+                      DofMotion* motions = nullptr) {
     const std::vector<Channel>& channels = joint.channels;
     for (size_t step = 0; step < channels.size(); ++step) {
         const size_t i = joint.first_rotation_acts_first ? channels.size() - 1 - step : step;
         if (!is_rotation(channels[i])) continue;
+        if (motions) motions[i].axis = matrix.col(axis_of(channels[i]));
         turn_about(matrix, axis_of(channels[i]), static_cast<double>(dofs[i]));
     }
 }
 
+void shift_by_channels(const Eigen::Matrix3d& parent_rotation, const Joint& joint,
+                       DofMotion* motions) {
+    for (size_t i = 0; i < joint.channels.size(); ++i) {
+        motions[i].turns = is_rotation(joint.channels[i]);
+        if (motions[i].turns) continue;
+        motions[i].axis = parent_rotation.col(axis_of(joint.channels[i]));
+    }
+}
+
 }  // namespace
+
+Eigen::Vector3d DofMotion::at(const Eigen::Vector3d& position) const {
+    if (!turns) return axis;
+    return axis.cross(position - pivot);
+}
 
 KinematicChain::KinematicChain(const Skeleton& skeleton) : dof_count_(skeleton.dof_count()) {
     links_.reserve(skeleton.joints().size());
@@ -48,7 +66,16 @@ KinematicChain::KinematicChain(const Skeleton& skeleton) : dof_count_(skeleton.d
     }
 }
 
-void KinematicChain::evaluate(std::span<const float> dofs, Pose& pose) const {
+void KinematicChain::evaluate(std::span<const float> dofs, Pose& pose,
+                              std::span<DofMotion> motions) const {
+    if (motions.size() != static_cast<size_t>(dof_count_)) {
+        throw std::invalid_argument("there is one motion a degree of freedom");
+    }
+    pose_links(dofs, pose, motions);
+}
+
+void KinematicChain::pose_links(std::span<const float> dofs, Pose& pose,
+                                std::span<DofMotion> motions) const {
     if (dofs.size() != static_cast<size_t>(dof_count_)) {
         throw std::invalid_argument("a frame must have one value a degree of freedom");
     }
@@ -58,6 +85,7 @@ void KinematicChain::evaluate(std::span<const float> dofs, Pose& pose) const {
         const Link& link = links_[j];
         const Joint& joint = link.joint;
         const float* const own = dofs.data() + link.first_dof;
+        DofMotion* const moves = motions.empty() ? nullptr : motions.data() + link.first_dof;
         Eigen::Vector3d& position = pose.positions[j];
         Eigen::Matrix3d& rotation = pose.rotations[j];
 
@@ -67,14 +95,18 @@ void KinematicChain::evaluate(std::span<const float> dofs, Pose& pose) const {
             position = pose.positions[static_cast<size_t>(joint.parent)];
             rotation = pose.rotations[static_cast<size_t>(joint.parent)];
         }
+        if (moves) shift_by_channels(rotation, joint, moves);
         if (link.is_offset) {
             position += rotation * (joint.offset_before +
                                     local_translation(joint, {own, joint.channels.size()}));
         }
         if (link.turns) {
             if (link.has_axes) rotation = (rotation * joint.axes).eval();
-            turn_by_channels(rotation, joint, own);
+            turn_by_channels(rotation, joint, own, moves);
             if (link.has_axes) rotation = (rotation * joint.axes.transpose()).eval();
+        }
+        if (moves) {
+            for (size_t i = 0; i < joint.channels.size(); ++i) moves[i].pivot = position;
         }
         position += rotation * joint.offset_after;
     }

@@ -12,6 +12,7 @@ SkeletonFit::SkeletonFit(std::shared_ptr<const Skeleton> skeleton,
     : skeleton_(std::move(skeleton)),
       options_(options),
       chain_(*skeleton_),
+      motions_(static_cast<size_t>(skeleton_->dof_count())),
       targets_(3 * skeleton_->joint_count()),
       rest_(skeleton_->dof_count()),
       weights_(skeleton_->dof_count()) {
@@ -21,13 +22,13 @@ SkeletonFit::SkeletonFit(std::shared_ptr<const Skeleton> skeleton,
             weights_[dof++] = is_rotation(channel) ? options_.rest : 0;
         }
     }
-    slopes_.resize(targets_.size() + rest_.size(), rest_.size());
-    moved_.resize(slopes_.rows());
+    // A degree of freedom never moves joints that do not hang on it: those slopes stay 0.
+    slopes_ = MatrixD::Zero(rest_.size(), targets_.size());
 }
 
 void SkeletonFit::residuals(std::span<const float> dofs, VectorD& result) {
     chain_.evaluate(dofs, pose_);
-    result.resize(slopes_.rows());
+    result.resize(targets_.size() + rest_.size());
     for (size_t joint = 0; joint < pose_.positions.size(); ++joint) {
         result.segment<3>(static_cast<Eigen::Index>(3 * joint)) = pose_.positions[joint];
     }
@@ -38,16 +39,25 @@ void SkeletonFit::residuals(std::span<const float> dofs, VectorD& result) {
     }
 }
 
-void SkeletonFit::differentiate(std::span<float> dofs, const VectorD& at) {
-    constexpr float nudge = 1.0F / 1024;
-    for (size_t dof = 0; dof < dofs.size(); ++dof) {
-        const float kept = dofs[dof];
-        dofs[dof] = kept + nudge;
-        const double step = double(dofs[dof]) - double(kept);  // as floats have it
-        residuals(dofs, moved_);
-        slopes_.col(static_cast<Eigen::Index>(dof)) = (moved_ - at) / step;
-        dofs[dof] = kept;
+void SkeletonFit::differentiate(std::span<const float> dofs, const VectorD& at) {
+    chain_.evaluate(dofs, pose_, motions_);
+    for (int joint = 0; joint < skeleton_->joint_count(); ++joint) {
+        const Eigen::Vector3d& position = pose_.positions[static_cast<size_t>(joint)];
+        for (int mover = joint; mover >= 0;) {
+            const Joint& moving = skeleton_->joints()[static_cast<size_t>(mover)];
+            const int first = skeleton_->first_dof(mover);
+            for (int dof = first; dof < first + static_cast<int>(moving.channels.size()); ++dof) {
+                slopes_.row(dof).segment<3>(3 * joint) =
+                    motions_[static_cast<size_t>(dof)].at(position);
+            }
+            mover = moving.parent;
+        }
     }
+    normal_.setZero(rest_.size(), rest_.size());
+    normal_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_);
+    normal_.diagonal() += weights_.cwiseAbs2();
+    gradient_ = slopes_ * at.head(targets_.size());
+    gradient_ += weights_.cwiseProduct(at.tail(rest_.size()));
 }
 
 double SkeletonFit::fit(std::span<const float> positions, std::span<const float> rest,
@@ -68,9 +78,8 @@ double SkeletonFit::fit(std::span<const float> positions, std::span<const float>
     std::vector<float> next(dofs.size());
     for (int i = 0; i < options_.iterations; ++i) {
         differentiate(dofs, here);
-        MatrixD normal = slopes_.transpose() * slopes_;
-        normal.diagonal() += damping * (normal.diagonal().array() + 1).matrix();
-        const VectorD step = normal.ldlt().solve(-slopes_.transpose() * here);
+        normal_.diagonal() += damping * (normal_.diagonal().array() + 1).matrix();
+        const VectorD step = normal_.selfadjointView<Eigen::Lower>().ldlt().solve(-gradient_);
         for (size_t dof = 0; dof < next.size(); ++dof) {
             next[dof] = float(double(dofs[dof]) + step[static_cast<Eigen::Index>(dof)]);
         }

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "kinetome/formats/euler.h"
 #include "kinetome/formats/joint_roles.h"
@@ -41,6 +43,12 @@ double greatest_difference(const Clip& clip, const std::string& asf, const std::
         }
     }
     return greatest;
+}
+
+bool has_dof(const Skeleton& skeleton, int joint, int dof) {
+    const int first = skeleton.first_dof(joint);
+    const auto& channels = skeleton.joints()[static_cast<size_t>(joint)].channels;
+    return dof >= first && dof < first + static_cast<int>(channels.size());
 }
 
 }  // namespace
@@ -125,6 +133,51 @@ TEST_CASE("a BVH joint's first rotation acts last and its offset comes before it
     const Eigen::Vector3d expected(5 + 8 * std::cos(x) * std::sin(z),
                                    -8 * std::cos(x) * std::cos(z), -8 * std::sin(x));
     CHECK((pose.positions[1] - expected).norm() < 1e-5);
+}
+
+TEST_CASE("what degrees of freedom do to joints is what little changes of them do") {
+    Joint bvh_root{.name = "hips",
+                   .offset_before = {1, 2, 3},
+                   .channels = {Channel::tx, Channel::rz, Channel::rx, Channel::ry},
+                   .first_rotation_acts_first = false};
+    Joint knee{.name = "knee",
+               .parent = 0,
+               .offset_before = {0, -10, 0},
+               .channels = {Channel::ty, Channel::rx, Channel::tz, Channel::rz},
+               .first_rotation_acts_first = false};
+    const Joint foot{.name = "foot", .parent = 1, .offset_before = {0, -8, 3}};
+    for (const Skeleton& skeleton : {Skeleton("rig", {bvh_root, knee, foot}), *small_skeleton()}) {
+        const KinematicChain chain(skeleton);
+        std::vector<float> dofs(static_cast<size_t>(skeleton.dof_count()));
+        for (size_t i = 0; i < dofs.size(); ++i) dofs[i] = 0.25F * float(i % 7) - 0.5F;
+        Pose pose, before, after;
+        std::vector<DofMotion> motions(dofs.size());
+        chain.evaluate(dofs, pose, motions);
+        for (int dof = 0; dof < skeleton.dof_count(); ++dof) {
+            constexpr float nudge = 1.0F / 256;  // a power of two: floats have it exactly
+            const auto at = static_cast<size_t>(dof);
+            const float kept = std::exchange(dofs[at], dofs[at] - nudge);
+            chain.evaluate(dofs, before);
+            dofs[at] = kept + nudge;
+            chain.evaluate(dofs, after);
+            dofs[at] = kept;
+            for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+                const auto j = static_cast<size_t>(joint);
+                int mover = joint;  // up to the joint that has this degree of freedom
+                while (mover >= 0 && !has_dof(skeleton, mover, dof)) {
+                    mover = skeleton.joints()[static_cast<size_t>(mover)].parent;
+                }
+                const Eigen::Vector3d moved =
+                    mover < 0 ? Eigen::Vector3d::Zero().eval() : motions[at].at(pose.positions[j]);
+                const Eigen::Vector3d expected =
+                    (after.positions[j] - before.positions[j]) / (2 * double(nudge));
+                INFO(skeleton.dof_names()[at] << " on joint " << joint);
+                CHECK((moved - expected).norm() < 1e-3);
+            }
+        }
+        motions.pop_back();
+        CHECK_THROWS_AS(chain.evaluate(dofs, pose, motions), std::invalid_argument);
+    }
 }
 
 TEST_CASE("a frame of another skeleton is refused") {

@@ -16,6 +16,16 @@ struct Pose {
     std::vector<Eigen::Matrix3d> rotations;
 };
 
+/// How a degree of freedom moves its joint and those that hang on it, where a pose has them.
+struct DofMotion {
+    bool turns = false;     ///< else it shifts
+    Eigen::Vector3d axis;   ///< of the turn, or the way of the shift: of length 1, in the world
+    Eigen::Vector3d pivot;  ///< cm; a point on the axis of a turn
+
+    /// What a unit (radian, cm) does to a joint that is there: cm a unit.
+    Eigen::Vector3d at(const Eigen::Vector3d& position) const;
+};
+
 /// A skeleton made ready to be posed many times: nothing is allocated for a frame when the pose is
 /// used again.
 class KinematicChain {
@@ -24,7 +34,9 @@ class KinematicChain {
 
     int joint_count() const { return static_cast<int>(links_.size()); }
     /// `dofs` has skeleton.dof_count() values (cm, radians). Computed in double.
-    void evaluate(std::span<const float> dofs, Pose& pose) const;
+    void evaluate(std::span<const float> dofs, Pose& pose) const { pose_links(dofs, pose, {}); }
+    /// The same, and what its degrees of freedom would do to that pose; `motions` has dof_count().
+    void evaluate(std::span<const float> dofs, Pose& pose, std::span<DofMotion> motions) const;
 
   private:
     struct Link {
@@ -34,6 +46,9 @@ class KinematicChain {
         bool has_axes = false;   ///< axes are not the identity
         bool is_offset = false;  ///< offset_before or a translation moves it in its parent's frame
     };
+    /// `motions` is empty when nobody asks for them.
+    void pose_links(std::span<const float> dofs, Pose& pose, std::span<DofMotion> motions) const;
+
     std::vector<Link> links_;
     int dof_count_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "kinetome/base/matrix.h"
 #include "kinetome/formats/clip.h"
@@ -32,18 +33,22 @@ class SkeletonFit {
                std::span<float> dofs);
 
   private:
-    /// Joints minus `positions`, then weighted angles minus `rest`.
+    /// Joints minus targets_, then weighted angles minus rest_: (3 · joint_count + dof_count).
     void residuals(std::span<const float> dofs, VectorD& result);
-    void differentiate(std::span<float> dofs, const VectorD& at);
+    /// What `at`, the residuals of `dofs`, say of the next step: slopesᵀ · slopes (its lower
+    /// triangle) and slopesᵀ · at.
+    void differentiate(std::span<const float> dofs, const VectorD& at);
 
     std::shared_ptr<const Skeleton> skeleton_;
     SkeletonFitOptions options_;
     KinematicChain chain_;
     Pose pose_;
+    std::vector<DofMotion> motions_;
     VectorD targets_, rest_;
     VectorD weights_;  ///< of each degree of freedom's own distance from rest
-    MatrixD slopes_;   ///< residuals × degrees of freedom
-    VectorD moved_;    ///< residuals
+    MatrixD slopes_;   ///< dof_count × 3 · joint_count, cm a radian or cm: of joints alone
+    MatrixD normal_;   ///< dof_count × dof_count
+    VectorD gradient_;
 };
 
 /// All frames of positions (n × 3 · joint_count): each from the one before, the first from `start`;
