@@ -93,6 +93,11 @@ TEST_CASE("labels that do not fit the store are refused, naming file and line", 
     refused(good + "01_01,200,300,walk\n01_01,90,120,jump\n",
             "4: frames 90 to 100 of clip '01_01' are 'jump' here and 'walk' in line 2");
 
+    const std::string truth =
+        corpus.folder.write("truth.csv", "clip,first,end,label,end_lo,end_hi\n99_99,0,9,x,9,9\n");
+    corpus.check({{"evaluate", store, "--what", "bundles", "--truth", truth}}, bad_input,
+                 "truth.csv:2: no clip '99_99' is indexed");
+
     // The store's own table outlives takes: those that are gone do not spoil it, wrong rows do.
     const auto own = [&](const std::string& rows, int expected) {
         write_text(fs::path(store) / "labels.csv", labels(rows));
@@ -127,6 +132,26 @@ TEST_CASE("the neighbours of all clips are written as JSON, and into a pipe as i
     CHECK(rows.back() == "]");
     CHECK(std::count(rows.begin(), rows.end(), " {") == std::ssize(lines) - 1);
     CHECK(std::count(rows.begin(), rows.end(), " },") == std::ssize(lines) - 2);
+}
+
+TEST_CASE("clips are listed by their names, in which there may be commas", "[input]") {
+    const TemporaryFolder folder;
+    const std::string takes = (folder / "takes").string(), store = (folder / "store").string();
+    generate_corpus(takes, 6000, 2, 5);
+    fs::rename(takes + "/01/01_01.amc", takes + "/01/one,more.amc");
+    require_program(reindex(takes, store, {"--only", "frames,features,pose_hierarchy"}));
+    const auto clips = [&](const std::vector<std::string>& words) {
+        std::vector<std::string> command = {"compress", store, "-o", (folder / "m").string()};
+        for (const std::string& word : words) command.insert(command.end(), {"--clip", word});
+        return lines_of(require_program(command).output).front().substr(0, 21);
+    };
+    CHECK(clips({"one,more"}) == "motion        1 clips");
+    CHECK(clips({"01_02,02_01"}) == "motion        2 clips");
+    CHECK(clips({"one,more", "02_01"}) == "motion        2 clips");
+    CHECK(contains(
+        require_program({"compress", store, "--clip", "one,02", "-o", (folder / "m").string()}, 64)
+            .errors,
+        "no clip 'one' is indexed"));
 }
 
 TEST_CASE("errors of the command line are JSON lines where the log is", "[input]") {
