@@ -266,9 +266,9 @@ std::pair<double, double> measured(const std::string& output, const std::string&
 
 using Words = std::vector<std::string>;
 
-/// No pose, joint or jolt above what the takes have, wherever the walk leads.
-void check_walk(Words words) {
-    const std::string told = require_program(words).output;
+/// No pose, joint or jolt above what the takes have, wherever the walk leads. What it prints.
+std::string check_walk(const Words& words) {
+    std::string told = require_program(words).output;
     CAPTURE(words, told);
     for (const char* const line : {"pose step", "fastest joint"}) {
         const auto [walked, in_takes] = measured(told, line);
@@ -278,6 +278,7 @@ void check_walk(Words words) {
     const auto [jolt, jolt_in_takes] = measured(told, "hardest jolt");
     CHECK(jolt <= jolt_in_takes * (1 + 1e-4));
     CHECK(measured(told, "foot slide").second > 0);
+    return told;
 }
 
 void check_quality(const std::string& store, const std::string& graph, const std::string& output) {
@@ -285,8 +286,7 @@ void check_quality(const std::string& store, const std::string& graph, const std
         for (const char* const seed : {"1", "2", "3"}) {
             const Words words{"walk",   store, "--graph",        graph,        "--seconds", "20",
                               "--seed", seed,  "--registration", registration, "-o",        output};
-            check_walk(words);
-            const auto [slide, in_takes] = measured(require_program(words).output, "foot slide");
+            const auto [slide, in_takes] = measured(check_walk(words), "foot slide");
             CAPTURE(words);
             CHECK(slide <= 1.5 * in_takes);
         }
