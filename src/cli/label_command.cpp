@@ -35,7 +35,7 @@ std::string summary_of(const TransferredLabels& labels) {
     const auto transferred = std::ranges::count_if(
         labels.guesses, [](const LabelGuess& guess) { return guess.label >= 0; });
     const auto all = std::ssize(labels.primitives);
-    return fmt::format("{} primitives: {} with a label, {} were given one, {} have none\n", all,
+    return fmt::format("{} primitives: {} had a label, {} were given one, {} have none\n", all,
                        known, transferred, all - known - transferred);
 }
 
