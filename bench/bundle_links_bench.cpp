@@ -1,8 +1,13 @@
 // Are bundles of different bodies linked where they hold the same activity, and nowhere else?
 //
 //   bundle_links_bench [--frames N] [--subjects N] [--seeds N...] [--reach R] [--threads N]
-//       Generated corpora, one a seed. A bundle has a label when it fills 0.9 of its frames; it
-//       counts when another subject has a bundle of that label.
+//       Generated corpora, one a seed.
+//   bundle_links_bench CORPUS TRUTH [--reach R] [--threads N]
+//       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
+//       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
+//
+// A bundle has a label when it fills 0.9 of its frames; it counts when another subject has a bundle
+// of that label.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +19,7 @@
 
 #include "cost.h"
 #include "generated_corpus.h"
+#include "kinetome/formats/annotation.h"
 #include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/models/bundle_links.h"
 #include "kinetome/models/motion_bundle.h"
@@ -24,7 +30,10 @@ namespace {
 
 using namespace kinetome;
 
+namespace fs = std::filesystem;
+
 struct Options {
+    fs::path corpus, truth;
     int64_t frames = 40'000, subjects = 4;
     std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
     int threads = 2;
@@ -41,6 +50,7 @@ struct SubjectBundles {
     std::vector<int32_t> subject_of_clip;
     std::vector<BundleMember> members;  ///< in rows
     std::vector<int32_t> subject_of, label_of;
+    std::vector<std::string> labels;  ///< by number
 };
 
 /// The label that fills enough of a bundle.
@@ -62,11 +72,10 @@ int32_t label_of(const MotionString& string, const SubstringBundle& bundle,
     return no_class;
 }
 
-/// Bundles of takes [begin, end), which are of one subject.
-void add_subject(const bench::GeneratedCorpus& corpus, size_t begin, size_t end, int32_t subject,
-                 int threads, SubjectBundles& all) {
-    const std::vector<Clip> clips(corpus.clips.begin() + std::ptrdiff_t(begin),
-                                  corpus.clips.begin() + std::ptrdiff_t(end));
+/// Bundles of takes of one subject.
+void add_subject(const std::vector<Clip>& clips, const std::vector<FrameClasses>& classes,
+                 int32_t subject, int threads, SubjectBundles& all) {
+    const size_t before = all.clips.size();
     const std::vector<std::string> names(clips.size());
     const bench::SpelledTakes takes(bench::PoseTakes::of_clips(names, clips), {}, threads);
     const MotionString& string = takes.string;
@@ -85,7 +94,7 @@ void add_subject(const bench::GeneratedCorpus& corpus, size_t begin, size_t end,
         if (bundle.is_degenerate()) break;
         const auto number = static_cast<int32_t>(all.subject_of.size());
         for (const Substring& member : bundle.members) {
-            const auto clip = int32_t(begin) + string.clip[static_cast<size_t>(member.first)];
+            const auto clip = int32_t(before) + string.clip[static_cast<size_t>(member.first)];
             const auto row = [&](int32_t letter) {
                 return std::lround(string.mean_frame(letter)) / row_frames;
             };
@@ -95,20 +104,67 @@ void add_subject(const bench::GeneratedCorpus& corpus, size_t begin, size_t end,
                 {number, {clip, first, std::clamp(row(member.last) + 1, first + 1, rows)}});
         }
         all.subject_of.push_back(subject);
-        all.label_of.push_back(label_of(string, bundle, std::span(corpus.classes).subspan(begin)));
+        all.label_of.push_back(label_of(string, bundle, classes));
     }
 }
 
-void judge(const Options& options, uint64_t seed) {
+SubjectBundles of_generated(const Options& options, uint64_t seed) {
     const bench::GeneratedCorpus corpus(options.frames, options.subjects, seed, options.threads);
     SubjectBundles all;
+    all.labels = corpus.labels;
     for (size_t begin = 0, end = 0; begin < corpus.plans.size(); begin = end) {
         while (end < corpus.plans.size() &&
                corpus.plans[end].subject == corpus.plans[begin].subject) {
             ++end;
         }
-        add_subject(corpus, begin, end, int32_t(corpus.plans[begin].subject), options.threads, all);
+        const auto first = std::ptrdiff_t(begin), last = std::ptrdiff_t(end);
+        add_subject({corpus.clips.begin() + first, corpus.clips.begin() + last},
+                    {corpus.classes.begin() + first, corpus.classes.begin() + last},
+                    int32_t(corpus.plans[begin].subject), options.threads, all);
     }
+    return all;
+}
+
+/// Labels of the frames at the pose rate, which truth counts at too.
+FrameClasses classes_of(const Clip& clip, const std::string& name,
+                        const std::vector<TruthRow>& truth,
+                        std::map<std::string, int32_t>& numbers) {
+    FrameClasses classes(size_t(clip.frames()), no_class);
+    for (const TruthRow& row : truth) {
+        if (row.clip != name) continue;
+        const int32_t number = numbers.emplace(row.label, int32_t(numbers.size())).first->second;
+        for (int64_t frame = row.first; frame < std::min(row.end, clip.frames()); ++frame)
+            classes[size_t(frame)] = number;
+    }
+    return classes;
+}
+
+/// Subjects are the folders.
+SubjectBundles of_takes(const Options& options) {
+    const std::vector<TruthRow> truth =
+        parse_truth_csv(read_source_file(options.truth), options.truth.string());
+    std::map<std::string, std::vector<fs::path>> subjects;
+    for (const fs::path& file : bench::amc_files(options.corpus))
+        subjects[file.parent_path().filename().string()].push_back(file);
+    SubjectBundles all;
+    std::map<std::string, int32_t> numbers;
+    int32_t subject = 0;
+    for (auto& [name, files] : subjects) {
+        std::ranges::sort(files);
+        std::vector<Clip> clips;
+        std::vector<FrameClasses> classes;
+        for (const fs::path& file : files) {
+            clips.push_back(resample(bench::read_take(file), bench::pose_rate));
+            classes.push_back(classes_of(clips.back(), file.stem().string(), truth, numbers));
+        }
+        add_subject(clips, classes, subject++, options.threads, all);
+    }
+    all.labels.resize(numbers.size());
+    for (const auto& [label, number] : numbers) all.labels[size_t(number)] = label;
+    return all;
+}
+
+void judge(const Options& options, const std::string& name, const SubjectBundles& all) {
     BundleLinks links;
     const bench::Cost cost = bench::cost_of([&] {
         links = link_bundles(all.rows, all.clips, all.members, all.subject_of_clip, options.links,
@@ -118,19 +174,24 @@ void judge(const Options& options, uint64_t seed) {
     for (size_t b = 0; b < all.subject_of.size(); ++b)
         subjects_with[all.label_of[b]].insert(all.subject_of[b]);
     std::set<int32_t> linked;
-    int64_t different = 0;
+    int64_t labelled = 0;
+    std::map<std::pair<std::string, std::string>, int64_t> mixed;
     for (const BundleLink& link : links.links) {
         const int32_t a = all.label_of[size_t(link.first)], b = all.label_of[size_t(link.second)];
         if (a == no_class || b == no_class) continue;
+        ++labelled;
         if (a == b) linked.insert({link.first, link.second});
-        different += a != b;
+        if (a != b) ++mixed[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
     }
-    int64_t counted = 0;
+    int64_t counted = 0, different = 0;
+    for (const auto& [labels, count] : mixed) different += count;
     for (const int32_t label : all.label_of)
         counted += label != no_class && subjects_with[label].size() > 1;
-    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>7.3f} {:>9} {:>7.1f}\n", seed,
-               all.subject_of.size(), counted, links.usual_cost, links.links.size(),
-               double(linked.size()) / double(counted), different, cost.cpu);
+    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>9} {:>7.1f}\n", name,
+               all.subject_of.size(), counted, links.usual_cost, links.links.size(), labelled,
+               counted ? double(linked.size()) / double(counted) : 0, different, cost.cpu);
+    for (const auto& [labels, count] : mixed)
+        fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
     std::fflush(stdout);
 }
 
@@ -140,14 +201,22 @@ int main(int argc, char** argv) {
     Options options;
     bench::Program program(
         "Which bundles of different bodies are linked, and which should not be?");
+    using enum bench::Program::Need;
+    program.argument("CORPUS", options.corpus, "folder of takes", optional);
+    program.argument("TRUTH", options.truth, "their activities", optional);
     program.count("--frames", options.frames, "of each corpus");
     program.count("--subjects", options.subjects, "of each corpus");
     program.option("--seeds", options.seeds, "of the corpora");
     program.option("--reach", options.links.reach, "times the usual cost");
     program.count("--threads", options.threads);
     return program.run(argc, argv, [&] {
-        fmt::print("seed bundles counted usual cost  links  linked different   cpu s\n");
-        for (const uint64_t seed : options.seeds) judge(options, seed);
+        fmt::print("seed bundles counted usual cost  links labelled  linked different   cpu s\n");
+        if (!options.corpus.empty()) {
+            judge(options, "-", of_takes(options));
+            return true;
+        }
+        for (const uint64_t seed : options.seeds)
+            judge(options, std::to_string(seed), of_generated(options, seed));
         return true;
     });
 }
