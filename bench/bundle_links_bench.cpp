@@ -7,7 +7,9 @@
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 //
 // A bundle has a label when it fills 0.9 of its frames; it counts when another subject has a bundle
-// of that label.
+// of that label. Performances of one label may be of forms that share no movement, such as hooks
+// and straight punches: those that count by form are bundles of which another subject has the form,
+// too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "activity_form.h"
 #include "cost.h"
 #include "generated_corpus.h"
 #include "kinetome/formats/annotation.h"
@@ -49,8 +52,13 @@ struct SubjectBundles {
     std::vector<RowRange> clips;
     std::vector<int32_t> subject_of_clip;
     std::vector<BundleMember> members;  ///< in rows
-    std::vector<int32_t> subject_of, label_of;
+    std::vector<int32_t> subject_of, label_of, form_of;
     std::vector<std::string> labels;  ///< by number
+};
+
+/// Of one take each, by frame.
+struct Truth {
+    std::vector<FrameClasses> labels, forms;
 };
 
 /// The label that fills enough of a bundle.
@@ -73,8 +81,8 @@ int32_t label_of(const MotionString& string, const SubstringBundle& bundle,
 }
 
 /// Bundles of takes of one subject.
-void add_subject(const std::vector<Clip>& clips, const std::vector<FrameClasses>& classes,
-                 int32_t subject, int threads, SubjectBundles& all) {
+void add_subject(const std::vector<Clip>& clips, const Truth& truth, int32_t subject, int threads,
+                 SubjectBundles& all) {
     const size_t before = all.clips.size();
     const std::vector<std::string> names(clips.size());
     const bench::SpelledTakes takes(bench::PoseTakes::of_clips(names, clips), {}, threads);
@@ -104,23 +112,38 @@ void add_subject(const std::vector<Clip>& clips, const std::vector<FrameClasses>
                 {number, {clip, first, std::clamp(row(member.last) + 1, first + 1, rows)}});
         }
         all.subject_of.push_back(subject);
-        all.label_of.push_back(label_of(string, bundle, classes));
+        all.label_of.push_back(label_of(string, bundle, truth.labels));
+        all.form_of.push_back(label_of(string, bundle, truth.forms));
     }
+}
+
+/// Labels with the form that each segment of the take has.
+FrameClasses forms_of(const TakePlan& plan, std::map<std::string, int32_t>& numbers) {
+    FrameClasses classes(size_t(plan.frames), no_class);
+    for (const SegmentPlan& segment : plan.segments) {
+        const auto number = numbers.emplace(bench::motion_of(segment), int32_t(numbers.size()));
+        std::fill(classes.begin() + segment.first, classes.begin() + segment.end,
+                  number.first->second);
+    }
+    return classes;
 }
 
 SubjectBundles of_generated(const Options& options, uint64_t seed) {
     const bench::GeneratedCorpus corpus(options.frames, options.subjects, seed, options.threads);
     SubjectBundles all;
     all.labels = corpus.labels;
+    std::map<std::string, int32_t> forms;
     for (size_t begin = 0, end = 0; begin < corpus.plans.size(); begin = end) {
+        Truth truth;
         while (end < corpus.plans.size() &&
                corpus.plans[end].subject == corpus.plans[begin].subject) {
+            truth.labels.push_back(corpus.classes[end]);
+            truth.forms.push_back(forms_of(corpus.plans[end], forms));
             ++end;
         }
-        const auto first = std::ptrdiff_t(begin), last = std::ptrdiff_t(end);
-        add_subject({corpus.clips.begin() + first, corpus.clips.begin() + last},
-                    {corpus.classes.begin() + first, corpus.classes.begin() + last},
-                    int32_t(corpus.plans[begin].subject), options.threads, all);
+        add_subject({corpus.clips.begin() + std::ptrdiff_t(begin),
+                     corpus.clips.begin() + std::ptrdiff_t(end)},
+                    truth, int32_t(corpus.plans[begin].subject), options.threads, all);
     }
     return all;
 }
@@ -157,11 +180,31 @@ SubjectBundles of_takes(const Options& options) {
             clips.push_back(resample(bench::read_take(file), bench::pose_rate));
             classes.push_back(classes_of(clips.back(), file.stem().string(), truth, numbers));
         }
-        add_subject(clips, classes, subject++, options.threads, all);
+        add_subject(clips, {classes, classes}, subject++, options.threads, all);
     }
     all.labels.resize(numbers.size());
     for (const auto& [label, number] : numbers) all.labels[size_t(number)] = label;
     return all;
+}
+
+/// How many bundles are of a class that another subject has, and how many of those are linked with
+/// one of their label.
+struct Linked {
+    int64_t counted = 0, linked = 0;
+    double share() const { return counted ? double(linked) / double(counted) : 0; }
+};
+
+Linked count_linked(const SubjectBundles& all, const std::vector<int32_t>& classes,
+                    const std::set<int32_t>& linked) {
+    std::map<int32_t, std::set<int32_t>> subjects_with;
+    for (size_t b = 0; b < classes.size(); ++b) subjects_with[classes[b]].insert(all.subject_of[b]);
+    Linked count;
+    for (size_t b = 0; b < classes.size(); ++b) {
+        if (classes[b] == no_class || subjects_with[classes[b]].size() < 2) continue;
+        ++count.counted;
+        count.linked += int64_t(linked.count(int32_t(b)));
+    }
+    return count;
 }
 
 void judge(const Options& options, const std::string& name, const SubjectBundles& all) {
@@ -170,9 +213,6 @@ void judge(const Options& options, const std::string& name, const SubjectBundles
         links = link_bundles(all.rows, all.clips, all.members, all.subject_of_clip, options.links,
                              options.threads);
     });
-    std::map<int32_t, std::set<int32_t>> subjects_with;
-    for (size_t b = 0; b < all.subject_of.size(); ++b)
-        subjects_with[all.label_of[b]].insert(all.subject_of[b]);
     std::set<int32_t> linked;
     int64_t labelled = 0;
     std::map<std::pair<std::string, std::string>, int64_t> mixed;
@@ -183,13 +223,13 @@ void judge(const Options& options, const std::string& name, const SubjectBundles
         if (a == b) linked.insert({link.first, link.second});
         if (a != b) ++mixed[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
     }
-    int64_t counted = 0, different = 0;
+    int64_t different = 0;
     for (const auto& [labels, count] : mixed) different += count;
-    for (const int32_t label : all.label_of)
-        counted += label != no_class && subjects_with[label].size() > 1;
-    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>9} {:>7.1f}\n", name,
-               all.subject_of.size(), counted, links.usual_cost, links.links.size(), labelled,
-               counted ? double(linked.size()) / double(counted) : 0, different, cost.cpu);
+    const Linked by_label = count_linked(all, all.label_of, linked);
+    const Linked by_form = count_linked(all, all.form_of, linked);
+    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>7} {:>7.3f} {:>9} {:>7.1f}\n",
+               name, all.subject_of.size(), by_label.counted, links.usual_cost, links.links.size(),
+               labelled, by_label.share(), by_form.counted, by_form.share(), different, cost.cpu);
     for (const auto& [labels, count] : mixed)
         fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
     std::fflush(stdout);
@@ -210,7 +250,9 @@ int main(int argc, char** argv) {
     program.option("--reach", options.links.reach, "times the usual cost");
     program.count("--threads", options.threads);
     return program.run(argc, argv, [&] {
-        fmt::print("seed bundles counted usual cost  links labelled  linked different   cpu s\n");
+        fmt::print(
+            "seed bundles counted usual cost  links labelled  linked by form  linked different   "
+            "cpu s\n");
         if (!options.corpus.empty()) {
             judge(options, "-", of_takes(options));
             return true;
