@@ -74,10 +74,11 @@ struct RunLog {
     }
 };
 
-/// Waits until something holds, such as a file being there. Fails the test after a minute.
+/// Waits until something holds, such as a file being there. Fails the test after some minutes: what
+/// is waited for may share its processors with the tests beside this one.
 template <class Condition>
 void wait_until(Condition condition) {
-    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(4);
     while (!condition()) {
         if (std::chrono::steady_clock::now() > give_up) throw std::runtime_error("waited in vain");
         std::this_thread::sleep_for(std::chrono::microseconds(200));

@@ -51,7 +51,7 @@ class JobChain {
     /// As jobs/wait.sh does it.
     CommandResult wait() const {
         return run(
-            {.words = {jobs + "wait.sh", store_, ingest, reindex, publish}, .time_limit = 90});
+            {.words = {jobs + "wait.sh", store_, ingest, reindex, publish}, .time_limit = 240});
     }
     void require_published() const {
         const CommandResult ended = wait();
