@@ -90,8 +90,7 @@ double WalkClips::Peaks::excess(const Peaks& bound) const {
     constexpr double rounding = 1e-4;  // of places on the floor, seen as accelerations
     return std::max({share_above(pose_step, bound.pose_step),
                      share_above(joints.speed, bound.joints.speed),
-                     share_above(joints.acceleration, bound.joints.acceleration)}) -
-           rounding;
+                     share_above(joints.acceleration, bound.joints.acceleration) - rounding});
 }
 
 std::vector<WalkClips::Peaks> WalkClips::peaks_by_frame(const Clip& clip,
