@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "disjoint_sets.h"
+#include "kinetome/base/shared_items.h"
 #include "member_agreement.h"
 #include "member_metric.h"
-#include "shared_items.h"
 
 namespace kinetome {
 namespace {

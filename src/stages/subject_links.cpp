@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "clip_pipeline.h"
-#include "kinetome/base/packing.h"
+#include "kinetome/base/shared_items.h"
 #include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/store/frame_store.h"
 
@@ -83,25 +83,6 @@ std::vector<MatrixF> read_own_rows(const StageContext& context,
     return rows;
 }
 
-/// Rows of the clips that are wanted, by clip, at every rank.
-std::vector<MatrixF> read_rows(const StageContext& context,
-                               const std::vector<const FinishedWork*>& frames,
-                               const std::map<std::string, size_t>& wanted, size_t clips) {
-    std::vector<MatrixF> rows = read_own_rows(context, frames, wanted, clips);
-    const auto ranks = static_cast<size_t>(context.workers().rank_count());
-    if (ranks == 1) return rows;
-    Packer mine;
-    for (size_t clip = static_cast<size_t>(context.workers().rank()); clip < clips; clip += ranks)
-        pack(mine, rows[clip]);
-    size_t first = 0;
-    for (std::string& bytes : context.ranks->gather_to_all(mine.take())) {
-        Unpacker in(std::move(bytes));
-        for (size_t clip = first; clip < clips; clip += ranks) unpack(in, rows[clip]);
-        ++first;
-    }
-    return rows;
-}
-
 /// What link_bundles asks for, of one class.
 struct ComparedClips {
     MatrixF rows;
@@ -164,7 +145,8 @@ std::vector<BundleLink> link_subjects(const StageContext& context,
     for (const auto& [name, clips] : classes) {
         for (const size_t clip : clips) wanted[bundles.clips[clip].name] = clip;
     }
-    std::vector<MatrixF> rows = read_rows(context, frames, wanted, bundles.clips.size());
+    std::vector<MatrixF> rows = read_own_rows(context, frames, wanted, bundles.clips.size());
+    exchange_by_turns(rows, context.workers());
     std::vector<BundleLink> links;
     for (const auto& [name, clips] : classes) {
         const ComparedClips all = compared_clips(bundles, heights, partitions, clips, rows);

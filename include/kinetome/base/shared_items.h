@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "kinetome/base/communicator.h"
@@ -9,6 +11,23 @@
 #include "kinetome/base/parallel.h"
 
 namespace kinetome {
+
+/// What came of each item, by item, at every rank: `results` holds those of this rank's turn, items
+/// rank, rank + ranks and so on.
+template <class Result>
+void exchange_by_turns(std::vector<Result>& results, const Workers& workers) {
+    const auto ranks = static_cast<size_t>(workers.rank_count());
+    if (ranks == 1) return;
+    Packer mine;
+    for (auto item = static_cast<size_t>(workers.rank()); item < results.size(); item += ranks)
+        pack(mine, results[item]);
+    size_t first = 0;
+    for (std::string& bytes : workers.ranks->gather_to_all(mine.take())) {
+        Unpacker in(std::move(bytes));
+        for (size_t item = first; item < results.size(); item += ranks) unpack(in, results[item]);
+        ++first;
+    }
+}
 
 /// work(i) of each item of [0, n), by item, at every rank. Ranks take turns, so that neighbouring
 /// items, which cost alike, go to different ones; the threads of a rank share its own.
@@ -20,17 +39,7 @@ std::vector<Result> shared_items(int64_t n, const Workers& workers, const Work& 
         const int64_t item = rank + turn * ranks;
         results[static_cast<size_t>(item)] = work(item);
     });
-    if (ranks == 1) return results;
-    Packer mine;
-    for (int64_t item = rank; item < n; item += ranks)
-        pack(mine, results[static_cast<size_t>(item)]);
-    int64_t first = 0;
-    for (std::string& bytes : workers.ranks->gather_to_all(mine.take())) {
-        Unpacker in(std::move(bytes));
-        for (int64_t item = first; item < n; item += ranks)
-            unpack(in, results[static_cast<size_t>(item)]);
-        ++first;
-    }
+    exchange_by_turns(results, workers);
     return results;
 }
 
