@@ -44,9 +44,10 @@ void add_options(CLI::App& app, EvaluateFlags& flags) {
     app.add_option("--truth", flags.truth,
                    "annotated activities: clip,first,end,label,end_lo,end_hi");
     app.add_option("--what", flags.what,
-                   "segments, primitives, bundles, variance (inside clusters of primitives); "
-                   "recurrence (of poses), estimation or compression (by a pose hierarchy), which "
-                   "need no annotation")
+                   "segments, primitives, bundles (and what they compress to), bundle-segments (as "
+                   "they cut takes), variance (inside clusters of primitives); recurrence (of "
+                   "poses), estimation or compression (by a pose hierarchy), which need no "
+                   "annotation")
         ->capture_default_str();
     app.add_option("--segments", flags.segments, "table as export segments writes it");
     app.add_option("--primitives", flags.primitives, "table as export primitives writes it");
@@ -100,16 +101,16 @@ void check_use(const EvaluateFlags& flags) {
     of("--segments", !flags.segments.empty(), {"segments"});
     of("--primitives", !flags.primitives.empty(), {"primitives"});
     of("--cycles", !flags.cycles.empty(), {"primitives"});
-    of("--svg", !flags.pictures.empty(), {"segments"});
-    of("--peer", !flags.peer.empty(), {"segments"});
+    of("--svg", !flags.pictures.empty(), {"bundle-segments", "segments"});
+    of("--peer", !flags.peer.empty(), {"bundle-segments", "segments"});
 }
 
 void check(const EvaluateFlags& flags) {
-    require(is_one_of(flags.what, {"segments", "primitives", "bundles", "variance", "recurrence",
-                                   "estimation", "compression"}),
+    require(is_one_of(flags.what, {"segments", "primitives", "bundles", "bundle-segments",
+                                   "variance", "recurrence", "estimation", "compression"}),
             "--what " + flags.what +
-                ": expected segments, primitives, bundles, variance, recurrence, estimation or "
-                "compression");
+                ": expected segments, primitives, bundles, bundle-segments, variance, recurrence, "
+                "estimation or compression");
     require(is_one_of(flags.format, {"text", "csv", "json"}),
             "--format " + flags.format + ": expected text, csv or json");
     require(is_one_of(flags.peer, {"", "ppca"}), "--peer " + flags.peer + ": expected ppca");
@@ -157,7 +158,10 @@ class EvaluationInput {
         return parse_cycles_csv(read_source_file(flags_.cycles), flags_.cycles.string());
     }
 
+    bool cut_by_bundles() const { return flags_.what == "bundle-segments"; }
+
     std::vector<SegmentedTake> segments() const {
+        if (cut_by_bundles()) return stored_bundle_segments(generation());
         if (flags_.segments.empty()) return stored_segments(generation());
         auto takes = parse_segments_csv(read_source_file(flags_.segments), flags_.segments.string(),
                                         flags_.rate);
@@ -166,6 +170,7 @@ class EvaluationInput {
     }
 
     bool has_primitives() const {
+        if (cut_by_bundles()) return false;
         return !flags_.primitives.empty() || (open_ && flags_.segments.empty());
     }
     std::vector<PrimitivesOfTake> primitives() const {
@@ -212,8 +217,9 @@ void require_folder(const fs::path& folder) {
 
 using SegmentsByClip = std::map<std::string, std::vector<Segment>>;
 
-void draw(const std::vector<AnnotatedTake>& takes, const std::vector<PrimitivesOfTake>& primitives,
-          const SegmentsByClip& peer, const fs::path& folder) {
+void draw(const std::vector<AnnotatedTake>& takes, const std::string& row_name,
+          const std::vector<PrimitivesOfTake>& primitives, const SegmentsByClip& peer,
+          const fs::path& folder) {
     std::map<std::string, std::vector<RowRange>> primitives_of;
     for (const PrimitivesOfTake& take : primitives) primitives_of[take.clip] = take.primitives;
     require_folder(folder);
@@ -221,7 +227,7 @@ void draw(const std::vector<AnnotatedTake>& takes, const std::vector<PrimitivesO
     for (const auto& [take, truth] : takes) {
         Timeline timeline{take.clip, truth.frames(), take.rate, {truth_row(truth)}, truth.classes};
         timeline.rows.push_back(
-            segment_row("segments", take.segments, primitives_of[take.clip], truth));
+            segment_row(row_name, take.segments, primitives_of[take.clip], truth));
         if (!peer.empty()) {
             timeline.rows.push_back(segment_row("PPCA", peer.at(take.clip), {}, truth));
         }
@@ -246,7 +252,8 @@ std::string segments_report(const EvaluateFlags& flags, const EvaluationInput& i
     if (!flags.pictures.empty()) {
         const auto primitives =
             input.has_primitives() ? input.primitives() : std::vector<PrimitivesOfTake>();
-        draw(takes, primitives, peer, flags.pictures);
+        draw(takes, input.cut_by_bundles() ? "bundles" : "segments", primitives, peer,
+             flags.pictures);
     }
     return in_format(evaluation_table(evaluation), evaluation_summary(evaluation), flags.format);
 }
@@ -262,7 +269,8 @@ Table hierarchy_table(const EvaluateFlags& flags, const Generation& generation,
 
 std::string report_on(const EvaluateFlags& flags, const EvaluationInput& input,
                       const Workers& workers) {
-    if (flags.what == "segments") return segments_report(flags, input);
+    if (is_one_of(flags.what, {"segments", "bundle-segments"}))
+        return segments_report(flags, input);
     Table table;
     if (is_about_hierarchy(flags)) {
         table = hierarchy_table(flags, input.generation(), workers);

@@ -38,6 +38,12 @@ double rho_of(const Generation& generation) {
     return std::stod(rho->second);
 }
 
+/// From where the take's segments end; nothing where that is there.
+void add_transition(SegmentedTake& take, int64_t end) {
+    const int64_t first = take.segments.empty() ? 0 : take.segments.back().frames.end;
+    if (first < end) take.segments.push_back({{first, end}, SegmentKind::transition});
+}
+
 int64_t height_of(const StoredGraph& graph, int32_t node) {
     return static_cast<int64_t>(graph.nodes.graph.members(node).size());
 }
@@ -127,6 +133,25 @@ BundleScore stored_bundle_score(const Generation& generation, std::span<const Tr
         bundle_of.push_back(member.cluster);
     }
     return score_bundles(members, bundle_of, classes);
+}
+
+std::vector<SegmentedTake> stored_bundle_segments(const Generation& generation) {
+    std::map<std::string, SegmentedTake> takes;
+    for (const CatalogClip& clip : generation.catalog().clips) {
+        if (clip.indexed()) takes[clip.name] = {clip.name, clip.frames, clip.rate, {}};
+    }
+    for (const ClipPrimitive& member : node_members(generation)) {
+        SegmentedTake& take = takes.at(member.clip);
+        add_transition(take, member.first);
+        take.segments.push_back(
+            {{member.first, member.end}, SegmentKind::activity, member.cluster});
+    }
+    std::vector<SegmentedTake> all;
+    for (auto& [name, take] : takes) {
+        add_transition(take, take.frames);
+        all.push_back(std::move(take));
+    }
+    return all;
 }
 
 Table bundle_score_table(const BundleScore& score) {

@@ -238,3 +238,44 @@ TEST_CASE("walks are refused between bundles that no path joins, and between no 
     CHECK(ways == tried);
     CHECK(none == tried);
 }
+
+TEST_CASE("bundles are scored as a segmentation of the takes that they cut", "[bundles]") {
+    const TemporaryFolder folder;
+    generate_corpus(folder / "takes", 6000, 1);
+    const StoreOnDisk store(folder / "store");
+    require_program(reindex(folder / "takes", store.path(), {"--only", stages_of_bundles}));
+    std::map<std::string, int64_t> frames_of;
+    for (const auto& row : rows_of(require_program({"export", store.name(), "clips"}).output))
+        frames_of[row[0]] = std::stoll(row[4]);
+    // The same as a table: what no bundle of several members holds is a transition.
+    std::map<std::string, std::vector<std::vector<std::string>>> members_of;
+    for (const auto& row : rows_of(require_program({"export", store.name(), "bundles"}).output)) {
+        if (row[4] == "0") members_of[row[1]].push_back(row);
+    }
+    std::string table = "clip,first,end,kind,activity_cluster\n";
+    for (const auto& [clip, frames] : frames_of) {
+        int64_t end = 0;
+        const auto add_transition = [&](int64_t first) {
+            if (end == first) return;
+            table +=
+                clip + "," + std::to_string(end) + "," + std::to_string(first) + ",transition,\n";
+        };
+        for (const auto& row : members_of[clip]) {
+            add_transition(std::stoll(row[2]));
+            table += clip + "," + row[2] + "," + row[3] + ",activity," + row[0] + "\n";
+            end = std::stoll(row[3]);
+        }
+        add_transition(frames);
+    }
+    const std::string segments = folder.write("segments.csv", table).string();
+    const auto evaluate = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"evaluate", store.name()});
+        words.insert(words.end(), {"--truth", (folder / "takes/truth.csv").string()});
+        return require_program(words).output;
+    };
+    const std::string score = evaluate({"--what", "bundle-segments"});
+    CHECK(score == evaluate({"--segments", segments}));
+    CHECK(contains(score, "a cut every second"));
+    evaluate({"--what", "bundle-segments", "--svg", (folder / "pictures").string()});
+    CHECK(contains(text_of(folder / "pictures/01_01.svg"), ">bundles</text>"));
+}

@@ -9,6 +9,7 @@
 #include "kinetome/models/bundle_score.h"
 #include "kinetome/stages/export.h"
 #include "kinetome/stages/primitive_walk.h"
+#include "kinetome/stages/segment_table.h"
 #include "kinetome/stages/stored_graph.h"
 
 namespace kinetome {
@@ -39,6 +40,11 @@ BundleShares bundle_shares(const Generation& generation);
 /// Through bundles: going over lasts as long as both members do, and what lies between two members
 /// of a clip is a transition however long it is (S1 §4).
 WalkOptions options_of_bundle_walk(WalkOptions options);
+
+/// Takes as bundles cut them, by name, at the sources' rates: an activity a member, whose cluster
+/// is its bundle, and transitions between members and at the ends. Throws UsageError when the
+/// generation has no bundles.
+std::vector<SegmentedTake> stored_bundle_segments(const Generation& generation);
 
 /// Motion bundles beside annotated activities (bundle_score.h), in takes that are annotated. Throws
 /// UsageError when the generation has no bundles or none of those takes is in it.
