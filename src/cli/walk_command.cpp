@@ -217,9 +217,10 @@ Command walk_command() {
                 ->capture_default_str();
             app.add_option("--blend", flags->blend,
                            "label, cluster or bundle: instead of a walk, its motions all at once");
-            app.add_option("--weights", flags->weights,
-                           "W,W,… of these motions, one each, in the order of `kinetome export` "
-                           "(default: all alike)")
+            app.add_option(
+                   "--weights", flags->weights,
+                   "W,W,… of these motions, one each, in the order of `kinetome export`; they are "
+                   "divided by their sum (default: all alike)")
                 ->delimiter(',');
             app.add_option(
                 "--body", options.body,

@@ -52,8 +52,8 @@ void keep_first(int64_t count, Table& table) {
 
 Table bundle_query_table(const OpenStore& open, const std::string& bundle,
                          const std::filesystem::path& labels, SignatureQuery query, int threads) {
-    const std::vector<ClipPrimitive> members =
-        motions_of_node(stored_bundle_members(open, labels), bundle, "bundle", "--bundle");
+    const std::vector<ClipPrimitive> members = motions_of_node(
+        stored_bundle_members(open, labels), bundle, options_of_bundle_walk({}).style, "--bundle");
     const ClipPrimitive& asked = representative(members, clip_source(open.generation));
     query.clip = asked.clip;
     query.file.clear();

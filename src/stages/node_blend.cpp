@@ -15,7 +15,7 @@
 namespace kinetome {
 
 std::vector<ClipPrimitive> motions_of_node(const std::vector<ClipPrimitive>& primitives,
-                                           const std::string& name, const std::string& group,
+                                           const std::string& name, const GraphStyle& style,
                                            const std::string& option) {
     std::vector<ClipPrimitive> motions;
     std::set<int32_t> clusters;
@@ -26,12 +26,13 @@ std::vector<ClipPrimitive> motions_of_node(const std::vector<ClipPrimitive>& pri
         clusters.insert(one.cluster);
     }
     if (motions.empty()) {
-        throw UsageError(fmt::format("{} {}: no {} has this label or number", option,
-                                     quote_for_message(name), group));
+        throw UsageError(fmt::format("{} {}: no {} has this label or number; {}", option,
+                                     quote_for_message(name), style.group, style.listing));
     }
     if (clusters.size() > 1) {
         throw UsageError(fmt::format("{} {}: that are {}s {}; name one of them", option,
-                                     quote_for_message(name), group, fmt::join(clusters, ", ")));
+                                     quote_for_message(name), style.group,
+                                     fmt::join(clusters, ", ")));
     }
     return motions;
 }
@@ -78,7 +79,7 @@ double largest_pose_step(const Clip& clip) {
 NodeBlend blend_node(const std::vector<ClipPrimitive>& primitives, const ClipSource& source,
                      const BlendOptions& options) {
     NodeBlend blend;
-    blend.parts = motions_of_node(primitives, options.node, options.style.group, "--blend");
+    blend.parts = motions_of_node(primitives, options.node, options.style, "--blend");
     blend.weights = weights_of(options, blend.parts.size());
     const auto heaviest =
         static_cast<int32_t>(std::ranges::max_element(blend.weights) - blend.weights.begin());

@@ -164,7 +164,11 @@ WalkOptions options_of_bundle_walk(WalkOptions options) {
     constexpr double longer_than_any_take = 1e6;  // seconds
     options.fade_seconds = longer_than_any_take;
     options.longest_gap = longer_than_any_take;
-    options.style = {.piece = "member", .group = "bundle", .boxes_by_size = true};
+    options.style = {
+        .piece = "member",
+        .group = "bundle",
+        .listing = "`kinetome bundles STORE --labels F` lists those of several members",
+        .boxes_by_size = true};
     return options;
 }
 

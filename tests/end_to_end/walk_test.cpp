@@ -216,7 +216,7 @@ TEST_CASE("a walk leads through bundles, and bundles are exported and evaluated"
     CHECK(contains(require_program(blend_of(largest, "1,1"), usage).errors, "expected one each"));
     CHECK(contains(require_program(blend("1,-1"), usage).errors, "is no weight"));
     CHECK(contains(require_program(blend_of("swimming", "1"), usage).errors,
-                   "no bundle has this label or number"));
+                   "no bundle has this label or number; `kinetome bundles"));
 
     const auto score =
         lines_of(require_program({"evaluate", store.path, "--what", "bundles", "--truth",

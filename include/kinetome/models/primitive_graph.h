@@ -14,6 +14,8 @@ namespace kinetome {
 /// How a graph speaks of what it holds, and draws it.
 struct GraphStyle {
     std::string piece = "primitive", group = "cluster";
+    /// Where a message sends whoever looks for a node.
+    std::string listing = "`kinetome export STORE primitives` lists them";
     /// Nodes as wide as their mean length, as high as the root of their number of pieces (S1 §4).
     bool boxes_by_size = false;
 };

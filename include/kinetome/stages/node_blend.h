@@ -29,10 +29,10 @@ struct NodeBlend {
     double pose_step = 0, pose_step_of_parts = 0;  ///< the largest, cm/s
 };
 
-/// The motions of the one bundle or cluster (`group`) that has the label or number. Throws
+/// The motions of the one bundle or cluster (style.group) that has the label or number. Throws
 /// UsageError, naming the command's option, when there is none or several.
 std::vector<ClipPrimitive> motions_of_node(const std::vector<ClipPrimitive>& primitives,
-                                           const std::string& name, const std::string& group,
+                                           const std::string& name, const GraphStyle& style,
                                            const std::string& option);
 
 /// All motions of a node at once from beginning to end (blend_motions), registered to the heaviest
