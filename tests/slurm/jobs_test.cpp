@@ -1,6 +1,7 @@
 // A corpus indexed by jobs on a real, if small, Slurm cluster: when all goes well, and when tasks,
 // nodes and time limits do not let it (jobs/README.md).
 #include "end_to_end/small_corpus.h"
+#include "held_processes.h"
 #include "job_chain.h"
 
 namespace {
@@ -9,7 +10,7 @@ constexpr int some_quarantined = 3, interrupted = 75, killed = 128 + SIGKILL;
 
 const std::vector<std::string> few_clusters = {"--", "--clusters", "60", "--shard-frames", "8192"};
 
-/// EM takes some seconds, so that it can be found at work.
+/// EM takes its time, so that it can be found at work.
 std::vector<std::string> slow_clustering(std::vector<std::string> submit_options = {}) {
     const std::vector<std::string> reindex_options = {
         "--", "--clusters",       "1000", "--shard-frames", "8192", "--min-gain",
@@ -29,24 +30,6 @@ std::string serial_digests(const fs::path& corpus, const std::vector<std::string
     return store.digests();
 }
 
-/// Processes of `kinetome` that work on a store.
-std::vector<pid_t> processes_on(const fs::path& store, const std::string& command) {
-    std::vector<pid_t> found;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-        const std::string name = entry.path().filename().string();
-        if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-        std::ifstream file(entry.path() / "cmdline", std::ios::binary);
-        std::string program, first;
-        std::getline(file, program, '\0');
-        std::getline(file, first, '\0');
-        std::string rest((std::istreambuf_iterator<char>(file)), {});
-        if (program.ends_with("kinetome") && first == command && contains(rest, store.string())) {
-            found.push_back(std::stoi(name));
-        }
-    }
-    return found;
-}
-
 /// A corpus whose clustering can be found at work, and the store that jobs make of it.
 struct SlowCorpus {
     TemporaryFolder folder;
@@ -57,8 +40,12 @@ struct SlowCorpus {
     JobChain submit(std::vector<std::string> submit_options = {}) const {
         return {takes, store.path(), slow_clustering(std::move(submit_options))};
     }
-    void wait_for_checkpoint() const {
+    /// The ranks of the run, when there is something to go on from and more to do.
+    std::vector<pid_t> ranks_at_work() const {
         wait_until([&] { return store.has_checkpoint(); });
+        std::vector<pid_t> ranks = processes_on(store.path(), "reindex");
+        REQUIRE(std::to_string(ranks.size()) == rank_count);
+        return ranks;
     }
     std::string serial_digests() const { return ::serial_digests(takes, slow_clustering()); }
 };
@@ -125,10 +112,9 @@ TEST_CASE("a killed rank ends its job at once, and submitting again goes on", "[
     const SlowCorpus corpus;
     {
         const JobChain chain = corpus.submit();
-        corpus.wait_for_checkpoint();
-        const std::vector<pid_t> ranks = processes_on(corpus.store.path(), "reindex");
-        REQUIRE(std::to_string(ranks.size()) == rank_count);
-        ::kill(ranks.back(), SIGKILL);
+        const HeldProcesses ranks(corpus.ranks_at_work());
+        ::kill(ranks.ids().back(), SIGKILL);
+        ranks.let_go();
         const CommandResult ended = chain.wait();
         INFO(ended.output);
         CHECK(ended.exit_code == killed);
@@ -146,9 +132,10 @@ TEST_CASE("a job whose node crashes begins anew, where it was interrupted", "[sl
     if (!cluster) return;
     const SlowCorpus corpus;
     const JobChain chain = corpus.submit();
-    corpus.wait_for_checkpoint();
+    const HeldProcesses ranks(corpus.ranks_at_work());
     const std::string node = SlurmCluster::first_node(JobChain::nodes(chain.reindex));
     cluster->crash(node);
+    ranks.let_go();
     wait_until([&] { return JobChain::state(chain.reindex) != "COMPLETING"; });
     cluster->mend(node);
     chain.require_published();
@@ -162,9 +149,10 @@ TEST_CASE("warned of its time limit, a job keeps its work and is requeued", "[sl
     if (!SlurmCluster::find()) return;
     const SlowCorpus corpus;
     const JobChain chain = corpus.submit();
-    corpus.wait_for_checkpoint();
+    const HeldProcesses ranks(corpus.ranks_at_work());
     // As Slurm does before the limit (--signal): the steps, not the script.
     ask({"scancel", "--signal=TERM", chain.reindex});
+    ranks.let_go_into(SIGTERM);
     chain.require_published();
     const std::string log = chain.log("reindex-" + chain.reindex);
     CHECK(contains(log, "interrupted; requeue 1 of at most 5"));
@@ -177,8 +165,9 @@ TEST_CASE("a job that is cancelled stays cancelled, and submitting again goes on
     const SlowCorpus corpus;
     {
         const JobChain chain = corpus.submit();
-        corpus.wait_for_checkpoint();
+        const HeldProcesses ranks(corpus.ranks_at_work());
         ask({"scancel", chain.reindex});
+        ranks.let_go_into(SIGTERM);
         const CommandResult ended = chain.wait();
         CHECK(ended.exit_code == interrupted);
         CHECK(JobChain::state(chain.reindex) == "CANCELLED");
@@ -197,15 +186,17 @@ TEST_CASE("a job that is interrupted more often than is allowed fails clearly", 
     for (const std::string& job : {chain.ingest, chain.reindex, chain.publish}) {
         CHECK(ask({"squeue", "-h", "-t", "all", "-j", job, "-o", "%l"}).starts_with("7:00"));
     }
-    corpus.wait_for_checkpoint();
     for (const char* start : {"start 1", "start 2"}) {
         wait_until([&] {
+            if (!corpus.store.has_checkpoint()) return false;  // there may be no log yet
             const std::string log = chain.log(name);
             const size_t at = log.find(start);
             return at != std::string::npos &&
                    contains(log.substr(at), "pose_clusters.h5: to be made");
         });
+        const HeldProcesses ranks(corpus.ranks_at_work());
         ask({"scancel", "--signal=TERM", chain.reindex});
+        ranks.let_go_into(SIGTERM);
     }
     const CommandResult ended = chain.wait();
     CHECK(ended.exit_code == interrupted);
