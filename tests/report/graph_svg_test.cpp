@@ -18,7 +18,7 @@ PrimitiveGraph toy_graph() {
         {{0, 0, 60}, {0, 60, 180}, {0, 180, 240}, {0, 240, 360}, {1, 0, 24}, {1, 24, 60}},
         std::vector<int32_t>{0, 1, 0, 1, 2, 3},
         std::vector<std::string>{"walk", "", "walk", "", "", "<b>&\""}, 0);
-    graph.style = {"member", "bundle", true};
+    graph.style = {.piece = "member", .group = "bundle", .boxes_by_size = true};
     return graph;
 }
 
