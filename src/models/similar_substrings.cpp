@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "kinetome/base/pack_fields.h"
+
 namespace kinetome {
 namespace {
 
@@ -26,6 +28,7 @@ SimilarSubstrings<Words>::SimilarSubstrings(const MatchingContext& context,
                                             const BundleResources& resources)
     : context_(context),
       options_(options),
+      resources_(resources),
       tables_(context, resources),
       visited_(static_cast<size_t>(context.string.size())) {
     for (const int32_t letter : context.string.letters) {
@@ -48,9 +51,7 @@ std::vector<Substring> SimilarSubstrings<Words>::find(const Substring& seed) {
         level.clear();
         for (size_t first = 0; first < sources.size(); first += substrings_at_once) {
             const size_t count = std::min(substrings_at_once, sources.size() - first);
-            const std::span<const Substring> together(sources.data() + first, count);
-            tables_.prepare(together);
-            for (const Substring& substring : together) spread_from(substring, level);
+            spread_from({sources.data() + first, count}, level);
         }
         found.insert(found.end(), level.begin(), level.end());
     }
@@ -98,9 +99,48 @@ uint64_t SimilarSubstrings<Words>::letter_hash(const Substring& substring) const
 }
 
 template <int Words>
-void SimilarSubstrings<Words>::spread_from(const Substring& substring, Level& reached) {
+void SimilarSubstrings<Words>::spread_from(std::span<const Substring> sources, Level& reached) {
+    if (resources_.ranks && sources.size() >= resources_.least_shared) {
+        for (const Matches& matches : shared_matches(sources)) reach(matches, reached);
+        return;
+    }
+    tables_.prepare(sources);
+    for (const Substring& substring : sources) reach(tables_.matches(substring), reached);
+}
+
+template <int Words>
+auto SimilarSubstrings<Words>::shared_matches(std::span<const Substring> sources)
+    -> std::vector<Matches> {
+    const Communicator& ranks = *resources_.ranks;
+    std::vector<std::vector<size_t>> items_of(static_cast<size_t>(ranks.size()));
+    for (size_t i = 0; i < sources.size(); ++i)
+        items_of[static_cast<size_t>(sources[i].first % ranks.size())].push_back(i);
+    const auto& mine = items_of[static_cast<size_t>(ranks.rank())];
+
+    std::vector<Substring> wanted;
+    for (const size_t i : mine) wanted.push_back(sources[i]);
+    tables_.prepare(wanted);
+    Packer out;
+    for (const Substring& substring : wanted) {
+        const auto matches = tables_.matches(substring);
+        out.put(static_cast<uint64_t>(matches.size()));
+        for (const auto& [column, starts] : matches) pack_all(out, column, starts);
+    }
+    const std::vector<std::string> brought = resources_.ranks->gather_to_all(out.take());
+    std::vector<Matches> all(sources.size());
+    for (size_t rank = 0; rank < brought.size(); ++rank) {
+        Unpacker in(brought[rank]);
+        for (const size_t i : items_of[rank]) {
+            unpack_each(in, all[i], [&](auto& cell) { unpack_all(in, cell.column, cell.starts); });
+        }
+    }
+    return all;
+}
+
+template <int Words>
+void SimilarSubstrings<Words>::reach(std::span<const ReachCell<Words>> matches, Level& reached) {
     using Mask = ReachMask<Words>;
-    for (const ReachCell<Words>& cell : tables_.matches(substring)) {
+    for (const ReachCell<Words>& cell : matches) {
         // A substring has two letters or more, and no interval that has been partitioned since the
         // table was made.
         const int32_t open = context_.open.run_before(cell.column, context_.most_letters - 1);

@@ -18,15 +18,16 @@ namespace {
 BundleResources bundle_resources(const StageContext& context, const Workers& workers) {
     BundleResources resources;
     resources.threads = workers.threads;
+    resources.ranks = workers.ranks;
     resources.table_bytes = std::min(resources.table_bytes, context.resources.memory_bytes / 4);
     return resources;
 }
 
-/// Rounds follow from one another: a partition is the work of one rank.
+/// Rounds follow from one another: ranks that share a partition go through all of them together,
+/// and share the tables of a round where these are many (SimilarSubstrings).
 PartitionBundles find(const StageContext& context, const PosePartition& partition,
                       const StoredMotionString& spelled, const StoredPoseClusters& model,
                       const Workers& workers) {
-    if (!workers.is_root()) return {};
     context.stop.check();
     const auto poses = [&](int32_t clip, int64_t first, int64_t end) {
         context.stop.check();

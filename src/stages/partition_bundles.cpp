@@ -44,6 +44,7 @@ PartitionBundles find_partition_bundles(const StoredMotionString& spelled, const
     const auto bundles = find_motion_bundles(
         string, accessibility_for_bundles(spelled.accessibility, string, mixture, options),
         spelled.lambda, options, resources);
+    if (resources.ranks && !resources.ranks->is_root()) return {};
     const auto letters = bundle_end_letters(bundles);
     const BundleEnds found = find_bundle_ends(
         string, bundles, letters, poses_of(string, letters, mixture.dimension(), poses), ends);

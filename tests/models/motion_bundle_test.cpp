@@ -11,6 +11,7 @@
 #include "bundle_reference.h"
 #include "kinetome/base/random.h"
 #include "random_mixture.h"
+#include "support/thread_ranks.h"
 
 using namespace kinetome;
 
@@ -24,14 +25,14 @@ struct RandomCase {
     MotionBundleOptions options;
 };
 
-RandomCase random_case(uint64_t number) {
+RandomCase random_case(uint64_t number, uint64_t most_runs = 13) {
     RandomStream random(number, "random motion string");
     const auto letters = static_cast<int32_t>(2 + random.below(5));
     std::vector<int32_t> frame_letters;
     std::vector<int64_t> clip_frames;
     const uint64_t clips = 1 + random.below(3);
     for (uint64_t clip = 0; clip < clips; ++clip) {
-        const auto runs = static_cast<int64_t>(random.below(14));
+        const auto runs = static_cast<int64_t>(random.below(most_runs + 1));
         clip_frames.push_back(0);
         for (int64_t run = 0; run < runs; ++run) {
             const auto letter = static_cast<int32_t>(random.below(static_cast<uint64_t>(letters)));
@@ -92,14 +93,20 @@ TEST_CASE("every interval inside a clip is in one bundle, and none across a brea
     }
 }
 
-TEST_CASE("bundles do not depend on threads or on the memory for reach tables") {
-    for (uint64_t number = 0; number < 300; ++number) {
-        const RandomCase one = random_case(number);
-        const auto alone =
-            find_motion_bundles(one.string, one.accessibility, one.longest, one.options);
-        const auto together = find_motion_bundles(one.string, one.accessibility, one.longest,
-                                                  one.options, {.threads = 2, .table_bytes = 0});
-        CHECK(alone == together);
+TEST_CASE("bundles do not depend on threads, ranks or the memory for reach tables") {
+    constexpr uint64_t enough_for_threads_and_ranks = 200;  // letters a clip, at most
+    for (uint64_t number = 0; number < 60; ++number) {
+        const RandomCase one = random_case(number, enough_for_threads_and_ranks);
+        const auto found = [&](const BundleResources& resources) {
+            return find_motion_bundles(one.string, one.accessibility, one.longest, one.options,
+                                       resources);
+        };
+        const auto alone = found({});
+        CHECK(alone == found({.threads = 2, .table_bytes = 0}));
+        run_as_ranks(2 + static_cast<int>(number % 2), [&](Communicator& ranks) {
+            if (found({.ranks = &ranks, .least_shared = 2}) != alone)
+                throw std::logic_error("a rank finds other bundles");
+        });
     }
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "kinetome/base/communicator.h"
 #include "kinetome/models/reach_table.h"
 
 namespace kinetome {
@@ -18,6 +19,8 @@ struct BundleResources {
     int threads = 1;
     uint64_t table_bytes = uint64_t{512}
                            << 20U;  ///< that reach tables kept from round to round take
+    Communicator* ranks = nullptr;  ///< that find the same bundles by the same calls
+    size_t least_shared = 256;      ///< substrings whose tables are worth a message between ranks
 };
 
 template <int Words>
@@ -30,6 +33,8 @@ class ReachTables {
     void prepare(std::span<const Substring> wanted);
     /// Columns and starts of substrings that match this one, as of when it was prepared.
     std::span<const ReachCell<Words>> matches(const Substring& substring) const;
+    /// What the tables kept take.
+    uint64_t bytes() const { return bytes_; }
 
   private:
     struct Request {

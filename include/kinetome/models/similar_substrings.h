@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -28,6 +29,7 @@ class SimilarSubstrings {
 
   private:
     using Level = std::vector<Substring>;
+    using Matches = std::vector<ReachCell<Words>>;
 
     /// Whether the relation may be spread from or to a substring of that length.
     bool length_allowed(const Substring& substring) const;
@@ -36,12 +38,17 @@ class SimilarSubstrings {
     Level of_new_letters(const Level& level);
     bool same_letters(const Substring& a, const Substring& b) const;
     uint64_t letter_hash(const Substring& substring) const;
-    void spread_from(const Substring& substring, Level& reached);
+    /// Of these, which have different letters; what is reached is put behind what is there.
+    void spread_from(std::span<const Substring> sources, Level& reached);
+    void reach(std::span<const ReachCell<Words>> matches, Level& reached);
+    /// What matches each of the sources, whose tables the ranks share by their first letters.
+    std::vector<Matches> shared_matches(std::span<const Substring> sources);
     /// Marks a substring as reached.
     void visit(const Substring& substring);
 
     const MatchingContext& context_;
     const MotionBundleOptions options_;
+    const BundleResources resources_;
     ReachTables<Words> tables_;
     std::vector<uint64_t> hashes_{0};  ///< of all letters before each one
     std::vector<uint64_t> powers_{1};  ///< of the hash's base

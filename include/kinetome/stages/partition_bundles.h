@@ -27,6 +27,8 @@ void unpack(Unpacker& in, PartitionBundles& bundles);
 /// Projected poses of frames [first, end) of a clip of the partition.
 using PoseReader = std::function<MatrixF(int32_t clip, int64_t first, int64_t end)>;
 
+/// Where ranks share the partition (resources.ranks), the first alone looks for the frames at which
+/// members begin and end, and has the result.
 PartitionBundles find_partition_bundles(const StoredMotionString& spelled, const Mixture& mixture,
                                         const MotionBundleOptions& options,
                                         const BundleEndOptions& ends,
