@@ -82,11 +82,13 @@ std::vector<ClusterLink> stored_bundle_links(const Generation& generation) {
 
 Table bundle_list(const OpenStore& open, const std::filesystem::path& labels) {
     const Generation& generation = open.generation;
-    const WalkOptions walk = options_of_bundle_walk({});
-    const StoredGraph graph = stored_graph(stored_bundle_members(open, labels),
-                                           clip_source(generation), walk.longest_gap, walk.style);
-    const double rho = rho_of(generation);
     Table table{{"bundle", "label", "height", "width", "volume", "takes"}, {}};
+    std::vector<ClipPrimitive> members = stored_bundle_members(open, labels);
+    if (members.empty()) return table;
+    const WalkOptions walk = options_of_bundle_walk({});
+    const StoredGraph graph =
+        stored_graph(std::move(members), clip_source(generation), walk.longest_gap, walk.style);
+    const double rho = rho_of(generation);
     std::vector<std::pair<double, int32_t>> largest_first;
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
         largest_first.emplace_back(

@@ -113,15 +113,14 @@ std::string box_size(const StoredGraph& graph, int32_t node) {
                        std::sqrt(static_cast<double>(motions.members(node).size())) / 2);
 }
 
-/// What the graph is called after.
-const std::string& kind_of(const StoredGraph& graph) {
-    const GraphStyle& style = graph.nodes.style;
+/// What a graph is called after.
+const std::string& kind_of(const GraphStyle& style) {
     return style.boxes_by_size ? style.group : style.piece;
 }
 
 std::string write_dot(const StoredGraph& graph) {
     const GraphStyle& style = graph.nodes.style;
-    std::string text = fmt::format("digraph {}s {{\n  node [shape=box];\n", kind_of(graph));
+    std::string text = fmt::format("digraph {}s {{\n  node [shape=box];\n", kind_of(style));
     for (int32_t node = 0; node < graph.nodes.graph.nodes(); ++node) {
         const auto members = graph.nodes.graph.members(node);
         const std::string caption =
@@ -148,7 +147,7 @@ StoredGraph stored_graph(std::vector<ClipPrimitive> primitives, const ClipSource
                          double longest_gap, const GraphStyle& style) {
     if (primitives.empty()) {
         throw UsageError(
-            fmt::format("the store has no {}s: nothing in its takes recurs", style.piece));
+            fmt::format("the store has no {}s: nothing in its takes recurs", kind_of(style)));
     }
     StoredGraph graph;
     std::map<std::string, int32_t> numbers;
@@ -210,7 +209,8 @@ std::string write_graph(const StoredGraph& graph, GraphFormat format) {
         case GraphFormat::dot:
             return write_dot(graph);
         case GraphFormat::svg:
-            return graph_svg(fmt::format("Graph of {}s", kind_of(graph)), graph.nodes, graph.rate);
+            return graph_svg(fmt::format("Graph of {}s", kind_of(graph.nodes.style)), graph.nodes,
+                             graph.rate);
     }
     throw std::logic_error("no such format of graphs");
 }

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "small_corpus.h"
 #include "store_on_disk.h"
 #include "support/temporary_folder.h"
 #include "takes.h"
@@ -278,4 +279,19 @@ TEST_CASE("bundles are scored as a segmentation of the takes that they cut", "[b
     CHECK(contains(score, "a cut every second"));
     evaluate({"--what", "bundle-segments", "--svg", (folder / "pictures").string()});
     CHECK(contains(text_of(folder / "pictures/01_01.svg"), ">bundles</text>"));
+}
+
+TEST_CASE("where no motion recurs there are no bundles to list, and none to walk through",
+          "[bundles]") {
+    const SmallCorpus corpus;
+    corpus.add_skeleton("01/01.asf");
+    corpus.add("01/01_01.amc", first_frames(corpus.performer().amc, 3));
+    const std::string store = corpus.store().string();
+    require_program(reindex(corpus.path(), corpus.store(), {"--only", stages_of_bundles}));
+    CHECK(require_program({"bundles", store, "--format", "csv"}).output ==
+          "bundle,label,height,width,volume,takes\n");
+    CHECK(contains(require_program({"bundles", store}).output, "frames in bundles              0"));
+    const CommandResult walk =
+        require_program({"walk", store, "--graph", "bundles", "-o", "w.bvh"}, usage);
+    CHECK(contains(walk.errors, "the store has no bundles: nothing in its takes recurs"));
 }
