@@ -1,7 +1,7 @@
 // How pure, wide and tall are motion bundles, and how fast are they found?
 //
 //   bundles_bench CORPUS TRUTH [--set takes|subjects|corpus|known] [--starts N] [--spread S]
-//       [--tau-quantile Q] [--step-quantile Q] [--threads N] [--curve]
+//       [--tau-quantile Q] [--step-quantile Q] [--threads N] [--curve] [--noise]
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
@@ -42,7 +42,8 @@ struct Options {
     int threads = 2;
     std::string spread;
     bool curve = false;
-    Setting setting;  ///< where nothing else is tried
+    bool noise = false;  ///< S1 §5.1's, on the annotated takes
+    Setting setting;     ///< where nothing else is tried
 };
 
 Found find(const bench::SpelledTakes& takes, const Setting& setting, int threads) {
@@ -150,7 +151,8 @@ void judge_labelled_takes(const Options& options) {
     const LabelsOfTakes labels = read_labels(options.truth);
     std::vector<LabelledSet> sets;
     for (const auto& names : labelled_sets) {
-        const auto takes = bench::PoseTakes::read(options.corpus, names);
+        auto takes = bench::PoseTakes::read(options.corpus, names);
+        if (options.noise) add_noise(takes);
         LabelledSet& set = sets.emplace_back();
         set.classes = classes_of(takes, labels);
         for (int start = 0; start < options.starts; ++start) {
@@ -347,6 +349,7 @@ int main(int argc, char** argv) {
     program.option("--tau-quantile", options.setting.tau_quantile);
     program.option("--step-quantile", options.setting.bundles.step_quantile);
     program.flag("--curve", options.curve, "by spread, quantiles, τ and γ");
+    program.flag("--noise", options.noise, "a tenth of σ on every column of the annotated takes");
     return program.run(argc, argv, [&] {
         if (!options.spread.empty()) parse_spread(options.spread, options.setting.bundles);
         if (set == "takes") judge_labelled_takes(options);
