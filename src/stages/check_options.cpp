@@ -55,7 +55,9 @@ void check_options(const ReindexOptions& o) {
             "leaf-dimension and leaf-tolerance must be above 0");
     require(o.pose_hierarchy.overlap >= 0 && o.pose_hierarchy.maps.parent_weight >= 0,
             "leaf-overlap and parent-weight must not be negative");
-    require(o.bundles.rho > 0, "rho must be above 0");
+    constexpr double largest_rho = 16;  // beyond, the volume of a wide bundle is soon no number
+    require(o.bundles.rho > 0 && o.bundles.rho <= largest_rho,
+            fmt::format("rho must be above 0 and at most {}", largest_rho));
     require(o.bundles.gamma >= 0 && o.bundles.gamma <= 1, "gamma must be in [0, 1]");
     require(o.bundles.step_quantile > 0 && o.bundles.step_quantile <= 1,
             "step-quantile must be in (0, 1]");

@@ -73,8 +73,10 @@ TEST_CASE("bundles made again over a store are those of a run with the same opti
     CHECK(contains(require_program(bundles_again(store, {"--rho", "2"})).errors, "is up to date"));
     CHECK(store.generations() == generations);
 
-    CHECK(contains(require_program(bundles_again(store, {"--rho", "0"}), usage).errors,
-                   "rho must be above 0"));
+    for (const std::string rho : {"0", "17"}) {
+        CHECK(contains(require_program(bundles_again(store, {"--rho", rho}), usage).errors,
+                       "rho must be above 0 and at most 16"));
+    }
     CHECK(contains(
         require_program(bundles_again(store, {"--rho", "1", "--generation", before}), usage).errors,
         "--generation is of no use"));
