@@ -108,7 +108,7 @@ TEST_CASE("reach tables made by several threads at once are those made one by on
     const RandomTake take;
     const MatchingContext context = take.context();
     const std::vector<Substring> substrings = take.substrings();
-    Tables together(context, {.threads = 4}), one_by_one(context, {});
+    Tables together(context, {.threads = 2}), one_by_one(context, {});
     together.prepare(substrings);
     for (const Substring& one : substrings) {
         one_by_one.prepare({&one, 1});
