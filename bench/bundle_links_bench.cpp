@@ -1,8 +1,10 @@
 // Are bundles of different bodies linked where they hold the same activity, and nowhere else?
 //
-//   bundle_links_bench [--frames N] [--subjects N] [--seeds N...] [--reach R] [--threads N]
+//   bundle_links_bench [--frames N] [--subjects N] [--seeds N...] [--reach R] [--candidates N]
+//   [--company S]
+//           [--threads N]
 //       Generated corpora, one a seed.
-//   bundle_links_bench CORPUS TRUTH [--reach R] [--threads N]
+//   bundle_links_bench CORPUS TRUTH [--reach R] ...
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 //
@@ -248,6 +250,8 @@ int main(int argc, char** argv) {
     program.count("--subjects", options.subjects, "of each corpus");
     program.option("--seeds", options.seeds, "of the corpora");
     program.option("--reach", options.links.reach, "times the usual cost");
+    program.count("--candidates", options.links.candidates, "of each body, for a bundle");
+    program.option("--company", options.links.company, "share of what agrees with both");
     program.count("--threads", options.threads);
     return program.run(argc, argv, [&] {
         fmt::print(

@@ -143,6 +143,54 @@ TEST_CASE("a bundle is not linked with what another kind of motion of its body r
     CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 2}, {1, 2}, {2, 3}});
 }
 
+TEST_CASE("a member that is in its bundle by mistake does not link it") {
+    for (const bool mistaken : {false, true}) {
+        Performances performances;
+        performances.add(0, {.column = 0}, 0, 0);
+        const int32_t mixed = performances.add(1, {.column = 1}, 0, 0);
+        performances.add(1, {.column = 0}, 0, 0);
+        // Two of the other movement and one of this, or the other way round.
+        const auto of_mixed = performances.members.begin() + 4, of_last = of_mixed + 4;
+        std::vector<BundleMember> members(performances.members.begin(), of_mixed);
+        const std::ptrdiff_t others = mistaken ? 3 : 1, own = 3 - (others - 1);
+        members.insert(members.end(), of_mixed, of_mixed + others);
+        for (auto one = of_last; one < of_last + own; ++one)
+            members.push_back({mixed, one->frames});
+        performances.members = members;
+        CHECK(pairs_of(performances.link(1, {.members = 4})) ==
+              (mistaken ? Pairs{} : Pairs{{0, 1}}));
+    }
+}
+
+TEST_CASE("two that agree, but each with bundles of its own, are not linked") {
+    Performances performances;
+    performances.add(0, {.extent = 1.16}, 0, 0);
+    performances.add(1, {.extent = 1.44}, 0, 0);
+    for (const int32_t subject : {2, 3}) performances.add(subject, {.extent = 1}, 0, 0);
+    for (const int32_t subject : {4, 5}) performances.add(subject, {.extent = 1.6}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})) ==
+          Pairs{{0, 2}, {0, 3}, {2, 3}, {1, 4}, {1, 5}, {4, 5}});
+    CHECK(pairs_of(performances.link(1, {.reach = 10, .company = 0})).contains({0, 1}));
+}
+
+TEST_CASE("what few members make near is linked where its kind of motion is") {
+    for (const bool with_kin : {false, true}) {
+        Performances performances;
+        performances.add(0, {.extent = 1}, 0, 0);
+        const int32_t uneven = performances.add(1, {.extent = 1.28}, 0, 0);
+        performances.add(1, {.extent = 2}, 0, 0);
+        // One member of either extent; only the one is near to the other body's.
+        auto& members = performances.members;
+        members.erase(members.begin() + 5, members.begin() + 8);
+        members.resize(6);
+        members.back().bundle = uneven;
+        if (with_kin) performances.add(1, {.extent = 1.4}, 0, 0);
+        const BundleLinks links = performances.link(1, {.reach = 10});
+        CHECK(pairs_of(links) == (with_kin ? Pairs{{0, 1}, {0, 3}} : Pairs{}));
+        if (with_kin) CHECK(links.kind_of[3] == uneven);
+    }
+}
+
 TEST_CASE("members at the ends of their takes are linked by what there is of their surroundings") {
     Performances performances;
     performances.add(0, {.column = 0}, 0, 0);

@@ -19,9 +19,11 @@ struct BundleLinkOptions {
     int64_t slip = 3;           ///< rows that a member may begin later, or end sooner, than the
                                 ///< other: bundles of a cycle are cut at any phase
     double reach = 2.5;         ///< times the usual cost between members of one bundle
-    int64_t members = 2;        ///< of each bundle, evenly spaced, that speak for it
-    int64_t candidates = 8;     ///< of each body with which a bundle is compared: those whose
+    int64_t members = 3;        ///< of each bundle, evenly spaced, that speak for it
+    int64_t candidates = 12;    ///< of each body with which a bundle is compared: those whose
                                 ///< middles are nearest
+    double company = 0.3;       ///< share of the bundles that agree with the one of two, of those
+                                ///< of the one with fewer, that must agree with the other, too
 };
 
 /// Two bundles of different subjects.
@@ -47,19 +49,25 @@ struct BundleLinks {
 /// (slope_limited_steps) through the middle of the one and a row of the other, but for `slip`.
 /// A path's cost is the mean distance along it. Two members are as far apart as the path's cost, in
 /// usual ones, times how unlike the movements along it are, each about its mean:
-/// √(Σ|x - y|² / (Σ|x|² + Σ|y|²)), 0 of the same movement, 1 of two that share nothing. Bundles
-/// agree when they are no farther apart than 1, both ways and by the nearest members: what moves
-/// wholly unlike may be as far apart as members of one bundle usually are, what moves more alike
-/// farther in proportion, up to `reach`. A left and a right punch are near, but share no movement.
+/// √(Σ|x - y|² / (Σ|x|² + Σ|y|²)), 0 of the same movement, 1 of two that share nothing. At most 1
+/// is near: what moves wholly unlike may be as far apart as members of one bundle usually are, what
+/// moves more alike farther in proportion, up to `reach`. A left and a right punch are near, but
+/// share no movement. Bundles agree when most members of either are near to one of the other, so
+/// that a member which is in its bundle by mistake does not speak for it.
 ///
 /// A bundle is compared with `candidates` of each body, those which look nearest by middles of
-/// members, and with those of which it is one. Bundles of one body that agree, and those that agree
-/// with these, are one kind of motion. A bundle is linked with the nearest of each other body that
-/// agrees with it (ties: the lower one), unless that one is nearer to another kind of motion of the
-/// first's body: what that body does otherwise tells apart better than any distance between two
-/// bodies. Every rank calls with the same; the result is the same at each, for any number of them
-/// and of threads. Throws std::invalid_argument when the lists disagree and for options that are
-/// not positive.
+/// members, and with those of which it is one. Two that agree keep company when they agree with
+/// `company` of the same ones: shared neighbours tell more than distances do (Jarvis & Patrick
+/// 1973). Bundles of one body that agree and keep company, and those that do so with these, are one
+/// kind of motion. A bundle is linked with the nearest of each other body that agrees with it
+/// (ties: the lower one), if they keep company, unless that one is nearer to another kind of motion
+/// of the first's body: what that body does otherwise tells apart better than any distance between
+/// two bodies. What is then without a link to a body is linked with the bundle there of which a
+/// member is nearest, if one is near and of a kind that is linked with its own.
+///
+/// Every rank calls with the same; the result is the same at each, for any number of them and of
+/// threads. Throws std::invalid_argument when the lists disagree and for options that are not
+/// positive.
 BundleLinks link_bundles(const MatrixFView& rows, std::span<const RowRange> clips,
                          std::span<const BundleMember> members, std::span<const int32_t> subject_of,
                          const BundleLinkOptions& options, const Workers& workers);
