@@ -1,6 +1,7 @@
 #include "kinetome/models/similar_substrings.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "kinetome/base/pack_fields.h"
@@ -101,7 +102,7 @@ uint64_t SimilarSubstrings<Words>::letter_hash(const Substring& substring) const
 template <int Words>
 void SimilarSubstrings<Words>::spread_from(std::span<const Substring> sources, Level& reached) {
     if (resources_.ranks && sources.size() >= resources_.least_shared) {
-        for (const Matches& matches : shared_matches(sources)) reach(matches, reached);
+        spread_shared(sources, *resources_.ranks, reached);
         return;
     }
     tables_.prepare(sources);
@@ -109,32 +110,30 @@ void SimilarSubstrings<Words>::spread_from(std::span<const Substring> sources, L
 }
 
 template <int Words>
-auto SimilarSubstrings<Words>::shared_matches(std::span<const Substring> sources)
-    -> std::vector<Matches> {
-    const Communicator& ranks = *resources_.ranks;
-    std::vector<std::vector<size_t>> items_of(static_cast<size_t>(ranks.size()));
-    for (size_t i = 0; i < sources.size(); ++i)
-        items_of[static_cast<size_t>(sources[i].first % ranks.size())].push_back(i);
-    const auto& mine = items_of[static_cast<size_t>(ranks.rank())];
-
-    std::vector<Substring> wanted;
-    for (const size_t i : mine) wanted.push_back(sources[i]);
-    tables_.prepare(wanted);
+void SimilarSubstrings<Words>::spread_shared(std::span<const Substring> sources,
+                                             Communicator& ranks, Level& reached) {
+    std::vector<Substring> mine;
+    std::ranges::copy_if(sources, std::back_inserter(mine), [&](const Substring& substring) {
+        return substring.first % ranks.size() == ranks.rank();
+    });
+    tables_.prepare(mine);
+    Level reached_here;
+    for (const Substring& substring : mine) reach(tables_.matches(substring), reached_here);
     Packer out;
-    for (const Substring& substring : wanted) {
-        const auto matches = tables_.matches(substring);
-        out.put(static_cast<uint64_t>(matches.size()));
-        for (const auto& [column, starts] : matches) pack_all(out, column, starts);
+    pack_each(out, reached_here, [&](const auto& one) { pack_all(out, one.first, one.last); });
+
+    Level reached_anywhere;
+    for (std::string& brought : ranks.gather_to_all(out.take())) {
+        Unpacker in(std::move(brought));
+        Level reached_there;
+        unpack_each(in, reached_there, [&](auto& one) { unpack_all(in, one.first, one.last); });
+        reached_anywhere.insert(reached_anywhere.end(), reached_there.begin(), reached_there.end());
     }
-    const std::vector<std::string> brought = resources_.ranks->gather_to_all(out.take());
-    std::vector<Matches> all(sources.size());
-    for (size_t rank = 0; rank < brought.size(); ++rank) {
-        Unpacker in(brought[rank]);
-        for (const size_t i : items_of[rank]) {
-            unpack_each(in, all[i], [&](auto& cell) { unpack_all(in, cell.column, cell.starts); });
-        }
-    }
-    return all;
+    std::ranges::sort(reached_anywhere);  // several may have reached one
+    const auto again = std::ranges::unique(reached_anywhere);
+    reached_anywhere.erase(again.begin(), again.end());
+    for (const Substring& substring : reached_anywhere) visit(substring);
+    reached.insert(reached.end(), reached_anywhere.begin(), reached_anywhere.end());
 }
 
 template <int Words>

@@ -5,8 +5,6 @@
 #include <bit>
 #include <cstdint>
 
-#include "kinetome/base/packing.h"
-
 namespace kinetome {
 
 /// Words × 64 bits, numbered from 0.
@@ -63,13 +61,6 @@ class ReachMask {
                 visit(static_cast<int32_t>(w) * 64 + std::countr_zero(word));
             }
         }
-    }
-
-    friend void pack(Packer& out, const ReachMask& mask) {
-        for (const uint64_t word : mask.words_) out.put(word);
-    }
-    friend void unpack(Unpacker& in, ReachMask& mask) {
-        for (uint64_t& word : mask.words_) word = in.get<uint64_t>();
     }
 
   private:

@@ -29,7 +29,6 @@ class SimilarSubstrings {
 
   private:
     using Level = std::vector<Substring>;
-    using Matches = std::vector<ReachCell<Words>>;
 
     /// Whether the relation may be spread from or to a substring of that length.
     bool length_allowed(const Substring& substring) const;
@@ -41,8 +40,8 @@ class SimilarSubstrings {
     /// Of these, which have different letters; what is reached is put behind what is there.
     void spread_from(std::span<const Substring> sources, Level& reached);
     void reach(std::span<const ReachCell<Words>> matches, Level& reached);
-    /// What matches each of the sources, whose tables the ranks share by their first letters.
-    std::vector<Matches> shared_matches(std::span<const Substring> sources);
+    /// The same, the ranks sharing the sources by their first letters.
+    void spread_shared(std::span<const Substring> sources, Communicator& ranks, Level& reached);
     /// Marks a substring as reached.
     void visit(const Substring& substring);
 
