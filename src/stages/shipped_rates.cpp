@@ -49,9 +49,9 @@ nanoseconds_per_value = 906.8
 serial_share = 0.9899
 
 [bundle_graph]
-seconds_per_file = 0.001944
-nanoseconds_per_value = 1.194e+04
-serial_share = 0.02573
+seconds_per_file = 0.001879
+nanoseconds_per_value = 1.922e+04
+serial_share = 0.0
 
 [segments]
 seconds_per_file = 0.002589
