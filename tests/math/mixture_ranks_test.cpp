@@ -30,7 +30,9 @@ class WatchedRows final : public RowSource {
     int64_t columns() const override { return rows_.columns(); }
     const PieceLayout& layout() const override { return rows_.layout(); }
     RowBlock read(const RowRange& range) const override {
-        most_ = std::max(most_.load(), range.size());
+        int64_t most = most_;
+        while (most < range.size() && !most_.compare_exchange_weak(most, range.size())) {
+        }
         return RowBlock(MatrixF(rows_.read(range).view()));  // rows of its own, soon freed
     }
     int64_t most_read_at_once() const { return most_; }
