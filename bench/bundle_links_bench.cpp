@@ -1,8 +1,7 @@
 // Are bundles of different bodies linked where they hold the same activity, and nowhere else?
 //
 //   bundle_links_bench [--frames N] [--subjects N] [--seeds N...] [--reach R] [--candidates N]
-//   [--company S]
-//           [--threads N]
+//       [--company S] [--threads N]
 //       Generated corpora, one a seed.
 //   bundle_links_bench CORPUS TRUTH [--reach R] ...
 //       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc

@@ -8,20 +8,13 @@
 
 #include "kinetome/base/pack_fields.h"
 #include "kinetome/base/shared_items.h"
+#include "lower_quantile.h"
 #include "member_metric.h"
 
 namespace kinetome {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// The lower of two middle ones; 0 of none.
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 MatrixF measured(const MatrixFView& rows, const Speakers& speakers) {
     std::vector<RowRange> members;
@@ -106,7 +99,7 @@ class Comparison {
                  count(), workers_,
                  [&](int64_t bundle) { return own_costs(static_cast<int32_t>(bundle)); }))
             costs.insert(costs.end(), own.begin(), own.end());
-        usual_cost_ = median(std::move(costs));
+        usual_cost_ = lower_quantile(std::move(costs), 0.5);
     }
 
     /// How far the middle of a member of the one is from the nearest of the other, if within reach.

@@ -24,7 +24,7 @@ BundleResources bundle_resources(const StageContext& context, const Workers& wor
 }
 
 /// Rounds follow from one another: ranks that share a partition go through all of them together,
-/// and share the tables of a round where these are many (SimilarSubstrings).
+/// and share the steps of its spread that are large (SimilarSubstrings).
 PartitionBundles find(const StageContext& context, const PosePartition& partition,
                       const StoredMotionString& spelled, const StoredPoseClusters& model,
                       const Workers& workers) {

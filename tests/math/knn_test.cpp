@@ -17,17 +17,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double squared_distance(const MatrixF& a, int64_t row_of_a, const MatrixF& b, int64_t row_of_b) {
-    const float* const x = a.data() + row_of_a * a.cols();
-    const float* const y = b.data() + row_of_b * b.cols();
-    double sum = 0;
-    for (int64_t j = 0; j < a.cols(); ++j) {
-        const double difference = double(x[j]) - double(y[j]);
-        sum += difference * difference;
-    }
-    return sum;
-}
-
 /// Every row for every query, by comparing each pair.
 class AllPairs {
   public:

@@ -11,6 +11,19 @@
 
 namespace kinetome::test {
 
+/// Without Eigen, which sanitizers make slow: tests compare some million pairs.
+inline double squared_distance(const MatrixF& a, int64_t row_of_a, const MatrixF& b,
+                               int64_t row_of_b) {
+    const float* const x = a.data() + row_of_a * a.cols();
+    const float* const y = b.data() + row_of_b * b.cols();
+    double sum = 0;
+    for (int64_t j = 0; j < a.cols(); ++j) {
+        const double difference = double(x[j]) - double(y[j]);
+        sum += difference * difference;
+    }
+    return sum;
+}
+
 inline double squared_distance(const Mixture& model, int64_t cluster, const MatrixF& rows,
                                int64_t row) {
     double sum = 0;

@@ -10,18 +10,6 @@ using namespace kinetome::test;
 
 namespace {
 
-/// Without Eigen, which sanitizers make slow: some million pairs are compared.
-double squared_distance(const MatrixF& rows, int64_t a, int64_t b) {
-    const float* const x = rows.data() + a * rows.cols();
-    const float* const y = rows.data() + b * rows.cols();
-    double sum = 0;
-    for (int64_t j = 0; j < rows.cols(); ++j) {
-        const double difference = double(x[j]) - double(y[j]);
-        sum += difference * difference;
-    }
-    return sum;
-}
-
 /// The same draws with every distance looked at: what the balls skip must not matter.
 std::vector<int64_t> plain_start(const MatrixF& rows, int64_t clusters, uint64_t seed,
                                  uint64_t restart) {
@@ -32,7 +20,7 @@ std::vector<int64_t> plain_start(const MatrixF& rows, int64_t clusters, uint64_t
     VectorD nearest = VectorD::Constant(rows.rows(), std::numeric_limits<double>::infinity());
     for (int64_t j = 1; j < clusters; ++j) {
         for (int64_t i = 0; i < rows.rows(); ++i) {
-            nearest[i] = std::min(nearest[i], squared_distance(rows, i, chosen.back()));
+            nearest[i] = std::min(nearest[i], squared_distance(rows, i, rows, chosen.back()));
         }
         double target = draw(j).uniform() * nearest.sum();
         int64_t row = 0;

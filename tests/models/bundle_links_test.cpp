@@ -149,14 +149,12 @@ TEST_CASE("a member that is in its bundle by mistake does not link it") {
         performances.add(0, {.column = 0}, 0, 0);
         const int32_t mixed = performances.add(1, {.column = 1}, 0, 0);
         performances.add(1, {.column = 0}, 0, 0);
-        // Two of the other movement and one of this, or the other way round.
-        const auto of_mixed = performances.members.begin() + 4, of_last = of_mixed + 4;
-        std::vector<BundleMember> members(performances.members.begin(), of_mixed);
-        const std::ptrdiff_t others = mistaken ? 3 : 1, own = 3 - (others - 1);
-        members.insert(members.end(), of_mixed, of_mixed + others);
-        for (auto one = of_last; one < of_last + own; ++one)
-            members.push_back({mixed, one->frames});
-        performances.members = members;
+        // Three of the other movement and one of this, or the other way round.
+        auto& members = performances.members;
+        const std::ptrdiff_t others = mistaken ? 3 : 1;
+        for (auto one = members.begin() + 8; one < members.end(); ++one) one->bundle = mixed;
+        members.erase(members.begin() + 8 + (4 - others), members.end());
+        members.erase(members.begin() + 4 + others, members.begin() + 8);
         CHECK(pairs_of(performances.link(1, {.members = 4})) ==
               (mistaken ? Pairs{} : Pairs{{0, 1}}));
     }

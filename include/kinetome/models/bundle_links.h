@@ -29,7 +29,8 @@ struct BundleLinkOptions {
 /// Two bundles of different subjects.
 struct BundleLink {
     int32_t first = 0, second = 0;  ///< bundles; the first is the lower one
-    double cost = 0;                ///< how far apart they are: 0 to 1
+    double cost = 0;  ///< how far apart most members of either are, or the nearest ones where these
+                      ///< do not agree: 0 to 1
     bool operator==(const BundleLink&) const = default;
 };
 

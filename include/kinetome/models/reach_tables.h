@@ -20,7 +20,8 @@ struct BundleResources {
     uint64_t table_bytes = uint64_t{512}
                            << 20U;  ///< that reach tables kept from round to round take
     Communicator* ranks = nullptr;  ///< that find the same bundles by the same calls
-    size_t least_shared = 256;      ///< substrings whose tables are worth a message between ranks
+    size_t least_shared =
+        256;  ///< substrings to spread from that are worth a message between ranks
 };
 
 template <int Words>
