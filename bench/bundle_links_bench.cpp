@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 
 struct Options {
     fs::path corpus, truth;
-    int64_t frames = 40'000, subjects = 4;
+    int64_t frames = 160'000, subjects = 4;
     std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
     int threads = 2;
     BundleLinkOptions links;
@@ -193,6 +193,11 @@ SubjectBundles of_takes(const Options& options) {
 struct Linked {
     int64_t counted = 0, linked = 0;
     double share() const { return counted ? double(linked) / double(counted) : 0; }
+    Linked& operator+=(const Linked& more) {
+        counted += more.counted;
+        linked += more.linked;
+        return *this;
+    }
 };
 
 Linked count_linked(const SubjectBundles& all, const std::vector<int32_t>& classes,
@@ -208,32 +213,80 @@ Linked count_linked(const SubjectBundles& all, const std::vector<int32_t>& class
     return count;
 }
 
-void judge(const Options& options, const std::string& name, const SubjectBundles& all) {
+/// Of one corpus.
+struct Judgement {
+    double usual_cost = 0, cpu = 0;
+    int64_t bundles = 0, links = 0;
+    int64_t labelled = 0;  ///< links between bundles with labels
+    Linked by_label, by_form;
+    std::map<std::pair<std::string, std::string>, int64_t> different;  ///< links between labels
+
+    int64_t wrong() const {
+        int64_t count = 0;
+        for (const auto& [labels, of_pair] : different) count += of_pair;
+        return count;
+    }
+};
+
+Judgement judge(const Options& options, const SubjectBundles& all) {
     BundleLinks links;
     const bench::Cost cost = bench::cost_of([&] {
         links = link_bundles(all.rows, all.clips, all.members, all.subject_of_clip, options.links,
                              options.threads);
     });
+    Judgement judgement;
     std::set<int32_t> linked;
-    int64_t labelled = 0;
-    std::map<std::pair<std::string, std::string>, int64_t> mixed;
     for (const BundleLink& link : links.links) {
         const int32_t a = all.label_of[size_t(link.first)], b = all.label_of[size_t(link.second)];
         if (a == no_class || b == no_class) continue;
-        ++labelled;
+        ++judgement.labelled;
         if (a == b) linked.insert({link.first, link.second});
-        if (a != b) ++mixed[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
+        if (a != b)
+            ++judgement.different[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
     }
-    int64_t different = 0;
-    for (const auto& [labels, count] : mixed) different += count;
-    const Linked by_label = count_linked(all, all.label_of, linked);
-    const Linked by_form = count_linked(all, all.form_of, linked);
+    judgement.usual_cost = links.usual_cost;
+    judgement.cpu = cost.cpu;
+    judgement.bundles = int64_t(all.subject_of.size());
+    judgement.links = int64_t(links.links.size());
+    judgement.by_label = count_linked(all, all.label_of, linked);
+    judgement.by_form = count_linked(all, all.form_of, linked);
+    return judgement;
+}
+
+void print(const std::string& name, const Judgement& judgement) {
     fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>7} {:>7.3f} {:>9} {:>7.1f}\n",
-               name, all.subject_of.size(), by_label.counted, links.usual_cost, links.links.size(),
-               labelled, by_label.share(), by_form.counted, by_form.share(), different, cost.cpu);
-    for (const auto& [labels, count] : mixed)
+               name, judgement.bundles, judgement.by_label.counted, judgement.usual_cost,
+               judgement.links, judgement.labelled, judgement.by_label.share(),
+               judgement.by_form.counted, judgement.by_form.share(), judgement.wrong(),
+               judgement.cpu);
+    for (const auto& [labels, count] : judgement.different)
         fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
     std::fflush(stdout);
+}
+
+/// Links should reach nine of ten bundles, and join no different labels.
+void print_all(const std::vector<Judgement>& corpora) {
+    constexpr double asked = 0.9;
+    Linked by_label, by_form;
+    int64_t labelled = 0, wrong = 0;
+    double least = 1;
+    for (const Judgement& one : corpora) {
+        by_label += one.by_label;
+        by_form += one.by_form;
+        labelled += one.labelled;
+        wrong += one.wrong();
+        least = std::min(least, one.by_label.share());
+    }
+    const auto count = [&](const auto& is) { return std::ranges::count_if(corpora, is); };
+    const auto is_linked = [](const Judgement& one) { return one.by_label.share() >= asked; };
+    const auto is_clean = [](const Judgement& one) { return one.wrong() == 0; };
+    fmt::print(
+        "all {} corpora: {:.3f} of {} bundles linked (least {:.3f}), by form {:.3f} of {}\n"
+        "{} of {} links join different labels\n"
+        "nine of ten linked in {}, no different labels in {}, both in {}\n",
+        corpora.size(), by_label.share(), by_label.counted, least, by_form.share(), by_form.counted,
+        wrong, labelled, count(is_linked), count(is_clean),
+        count([&](const Judgement& one) { return is_linked(one) && is_clean(one); }));
 }
 
 }  // namespace
@@ -257,11 +310,15 @@ int main(int argc, char** argv) {
             "seed bundles counted usual cost  links labelled  linked by form  linked different   "
             "cpu s\n");
         if (!options.corpus.empty()) {
-            judge(options, "-", of_takes(options));
+            print("-", judge(options, of_takes(options)));
             return true;
         }
-        for (const uint64_t seed : options.seeds)
-            judge(options, std::to_string(seed), of_generated(options, seed));
+        std::vector<Judgement> corpora;
+        for (const uint64_t seed : options.seeds) {
+            corpora.push_back(judge(options, of_generated(options, seed)));
+            print(std::to_string(seed), corpora.back());
+        }
+        print_all(corpora);
         return true;
     });
 }

@@ -34,6 +34,8 @@ struct BundleDistance {
     int32_t first = 0, second = 0;  ///< the first is the lower one
     double nearest = 0;             ///< by the members of either that are nearest to the other
     double most = 0;                ///< within which most members of either are from the other
+
+    bool agree() const { return most <= farthest; }  ///< do most members of either?
 };
 
 struct BundleDistances {

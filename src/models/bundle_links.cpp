@@ -1,7 +1,6 @@
 #include "kinetome/models/bundle_links.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -9,15 +8,13 @@
 #include <utility>
 
 #include "bundle_distances.h"
+#include "bundle_neighbours.h"
 #include "disjoint_sets.h"
 
 namespace kinetome {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// So many bundles must agree with either of two, beside the other, to tell anything about them.
-constexpr size_t least_company = 2;
 
 void check(const MatrixFView& rows, std::span<const RowRange> clips,
            std::span<const BundleMember> members, std::span<const int32_t> subject_of,
@@ -47,17 +44,21 @@ struct Near {
     int32_t subject = 0;
     int32_t bundle = 0;
     double distance = infinite;
+
+    /// Of equally near ones the lower is.
+    bool nearer_than(const Near& other) const {
+        return std::pair(distance, bundle) < std::pair(other.distance, other.bundle);
+    }
 };
 
 /// Of one bundle the nearest of each other body, by subject.
 class NearestOfBodies {
   public:
-    /// Of equally near ones the lower is kept.
     void keep(const Near& one) {
         const auto place = std::ranges::lower_bound(near_, one.subject, {}, &Near::subject);
         if (place == near_.end() || place->subject != one.subject)
             near_.insert(place, one);
-        else if (std::pair(one.distance, one.bundle) < std::pair(place->distance, place->bundle))
+        else if (one.nearer_than(*place))
             *place = one;
     }
 
@@ -81,11 +82,10 @@ class Linking {
         : speakers_(speakers),
           distances_(std::move(distances)),
           company_(company),
-          agreeing_(speakers_.bundles.size()),
+          neighbours_(distances_.within, speakers_.subject_of),
           kinds_(static_cast<int64_t>(speakers_.bundles.size())) {}
 
     BundleLinks link() {
-        find_agreeing();
         find_kinds();
         link_agreeing();
         link_kin();
@@ -101,42 +101,24 @@ class Linking {
     bool of_one_body(const BundleDistance& pair) const {
         return subject(pair.first) == subject(pair.second);
     }
-    static bool agree(const BundleDistance& pair) { return pair.most <= farthest; }
-
-    void find_agreeing() {
-        for (const BundleDistance& pair : distances_.within) {
-            if (!agree(pair)) continue;
-            agreeing_[static_cast<size_t>(pair.first)].push_back(pair.second);
-            agreeing_[static_cast<size_t>(pair.second)].push_back(pair.first);
-        }
-        for (std::vector<int32_t>& agreeing : agreeing_) std::ranges::sort(agreeing);
-    }
-
-    /// Do two that agree do so with enough of the same bundles?
     bool keep_company(int32_t a, int32_t b) const {
-        const auto &of_one = agreeing_[static_cast<size_t>(a)],
-                   &of_other = agreeing_[static_cast<size_t>(b)];
-        const size_t most = std::min(of_one.size(), of_other.size()) - 1;  // but for each other
-        if (most < least_company) return true;
-        std::vector<int32_t> common;
-        std::ranges::set_intersection(of_one, of_other, std::back_inserter(common));
-        return static_cast<double>(common.size()) >= company_ * static_cast<double>(most);
+        return neighbours_.keep_company(a, b, company_);
     }
 
     void find_kinds() {
         for (const BundleDistance& pair : distances_.within) {
-            if (agree(pair) && of_one_body(pair) && keep_company(pair.first, pair.second))
+            if (pair.agree() && of_one_body(pair) && keep_company(pair.first, pair.second))
                 kinds_.unite(pair.first, pair.second);
         }
     }
 
-    /// Of each other body the nearest that agrees and keeps company; not where that one is nearer
-    /// to another kind of motion of this body.
+    /// Of each other body the nearest that agrees, if they keep company and are not contradicted;
+    /// not where that one is nearer to another kind of motion of this body.
     void link_agreeing() {
-        std::vector<NearestOfBodies> near(agreeing_.size());
+        std::vector<NearestOfBodies> near(speakers_.bundles.size());
         for (const BundleDistance& pair : distances_.within) {
             const auto [a, b] = Pair(pair.first, pair.second);
-            if (!agree(pair) || of_one_body(pair)) continue;
+            if (!pair.agree() || of_one_body(pair)) continue;
             near[static_cast<size_t>(a)].keep({subject(b), b, pair.most});
             near[static_cast<size_t>(b)].keep({subject(a), a, pair.most});
         }
@@ -145,7 +127,8 @@ class Linking {
                 // The other has this one near, so that it has a nearest of this one's body.
                 const Near& back = *near[static_cast<size_t>(other.bundle)].of(subject(a));
                 const bool nearest = back.distance >= other.distance;
-                if ((nearest || kinds_.together(back.bundle, a)) && keep_company(a, other.bundle))
+                if ((nearest || kinds_.together(back.bundle, a)) && keep_company(a, other.bundle) &&
+                    !neighbours_.contradict(a, other.bundle, other.distance))
                     linked_[std::minmax(a, other.bundle)] = other.distance;
             }
         }
@@ -153,28 +136,37 @@ class Linking {
 
     Pair kinds_of(int32_t a, int32_t b) { return std::minmax(kinds_.root(a), kinds_.root(b)); }
 
-    /// What has no link with a body yet: with the nearest there of a kind that is linked with its
-    /// own, by the members that are nearest.
+    /// What has no link yet: with the nearest, by the members that are nearest, of those of other
+    /// bodies whose kinds are linked with its own and that are not contradicted.
     void link_kin() {
-        std::set<Pair> linked_kinds, linked_bodies;  // the latter of a bundle and a subject
+        std::set<Pair> linked_kinds;
+        std::vector<bool> is_linked(speakers_.bundles.size());
         for (const auto& [pair, distance] : linked_) {
             linked_kinds.insert(kinds_of(pair.first, pair.second));
-            linked_bodies.insert(
-                {{pair.first, subject(pair.second)}, {pair.second, subject(pair.first)}});
+            is_linked[static_cast<size_t>(pair.first)] = true;
+            is_linked[static_cast<size_t>(pair.second)] = true;
         }
-        std::vector<NearestOfBodies> near(agreeing_.size());
+        std::vector<Near> nearest(speakers_.bundles.size());
         for (const BundleDistance& pair : distances_.within) {
             if (of_one_body(pair) || !linked_kinds.contains(kinds_of(pair.first, pair.second)))
                 continue;
-            for (const auto& [a, b] :
-                 {Pair(pair.first, pair.second), Pair(pair.second, pair.first)}) {
-                if (!linked_bodies.contains({a, subject(b)}))
-                    near[static_cast<size_t>(a)].keep({subject(b), b, pair.nearest});
-            }
+            const auto improves = [&](int32_t one, int32_t other) {
+                return !is_linked[static_cast<size_t>(one)] &&
+                       Near{subject(other), other, pair.nearest}.nearer_than(
+                           nearest[static_cast<size_t>(one)]);
+            };
+            const bool first = improves(pair.first, pair.second),
+                       second = improves(pair.second, pair.first);
+            if (!(first || second) || neighbours_.contradict(pair.first, pair.second, pair.most))
+                continue;
+            if (first)
+                nearest[size_t(pair.first)] = {subject(pair.second), pair.second, pair.nearest};
+            if (second)
+                nearest[size_t(pair.second)] = {subject(pair.first), pair.first, pair.nearest};
         }
-        for (int32_t a = 0; a < static_cast<int32_t>(near.size()); ++a) {
-            for (const Near& other : near[static_cast<size_t>(a)])
-                linked_[std::minmax(a, other.bundle)] = other.distance;
+        for (int32_t a = 0; a < static_cast<int32_t>(nearest.size()); ++a) {
+            const Near& other = nearest[static_cast<size_t>(a)];
+            if (other.distance < infinite) linked_[std::minmax(a, other.bundle)] = other.distance;
         }
     }
 
@@ -201,7 +193,7 @@ class Linking {
     const Speakers& speakers_;
     BundleDistances distances_;
     double company_;
-    std::vector<std::vector<int32_t>> agreeing_;  ///< by bundle, of all bodies, ascending
+    BundleNeighbours neighbours_;
     DisjointSets kinds_;
     std::map<Pair, double> linked_;  ///< how far apart they are
 };

@@ -49,7 +49,7 @@ const std::vector<StageRow>& stage_table() {
         {.name = "bundle_graph",
          .inputs = {"frames", "bundles"},
          .sharded = false,
-         .format_version = 4,
+         .format_version = 5,
          .description = "which motion bundles follow each other, which are the same (S1 §4)",
          .make = make_bundle_graph},
         {.name = "signatures",

@@ -160,7 +160,18 @@ TEST_CASE("a member that is in its bundle by mistake does not link it") {
     }
 }
 
-TEST_CASE("two that agree, but each with bundles of its own, are not linked") {
+TEST_CASE("two that agree, but each with others of its own body, are not linked") {
+    Performances performances;
+    performances.add(0, {.extent = 1.16}, 0, 0);
+    performances.add(1, {.extent = 1.44}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 1}});
+    for (int i = 0; i < 2; ++i) performances.add(0, {.extent = 1}, 0, 0);
+    for (int i = 0; i < 2; ++i) performances.add(1, {.extent = 1.6}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})).empty());
+    CHECK(pairs_of(performances.link(1, {.reach = 10, .company = 0})) == Pairs{{0, 1}});
+}
+
+TEST_CASE("two that agree, but each with bundles of other bodies, are not linked") {
     Performances performances;
     performances.add(0, {.extent = 1.16}, 0, 0);
     performances.add(1, {.extent = 1.44}, 0, 0);
@@ -168,7 +179,18 @@ TEST_CASE("two that agree, but each with bundles of its own, are not linked") {
     for (const int32_t subject : {4, 5}) performances.add(subject, {.extent = 1.6}, 0, 0);
     CHECK(pairs_of(performances.link(1, {.reach = 10})) ==
           Pairs{{0, 2}, {0, 3}, {2, 3}, {1, 4}, {1, 5}, {4, 5}});
-    CHECK(pairs_of(performances.link(1, {.reach = 10, .company = 0})).contains({0, 1}));
+    CHECK(!pairs_of(performances.link(1, {.reach = 10, .company = 0})).contains({0, 1}));
+}
+
+TEST_CASE("two that agree are not linked where a third body has what is nearer to the one alone") {
+    Performances performances;
+    performances.add(0, {.extent = 1.16}, 0, 0);
+    performances.add(1, {.extent = 1.44}, 0, 0);
+    performances.add(2, {.extent = 1}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 2}});
+    // One between them, of a body that speaks for both.
+    performances.add(3, {.extent = 1.3}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})).contains({0, 1}));
 }
 
 TEST_CASE("what few members make near is linked where its kind of motion is") {
@@ -186,7 +208,24 @@ TEST_CASE("what few members make near is linked where its kind of motion is") {
         const BundleLinks links = performances.link(1, {.reach = 10});
         CHECK(pairs_of(links) == (with_kin ? Pairs{{0, 1}, {0, 3}} : Pairs{}));
         if (with_kin) CHECK(links.kind_of[3] == uneven);
+        // A third body that has the one, but nothing near the other.
+        performances.add(2, {.extent = 0.6}, 0, 0);
+        CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 3}});
     }
+}
+
+TEST_CASE("what agrees with a bundle of another body needs no kin") {
+    Performances performances;
+    performances.add(0, {.extent = 1}, 0, 0);
+    const int32_t uneven = performances.add(1, {.extent = 1.28}, 0, 0);
+    performances.add(1, {.extent = 2}, 0, 0);
+    auto& members = performances.members;
+    members.erase(members.begin() + 5, members.begin() + 8);
+    members.resize(6);
+    members.back().bundle = uneven;
+    performances.add(1, {.extent = 1.4}, 0, 0);
+    performances.add(2, {.extent = 1.6}, 0, 0);
+    CHECK(pairs_of(performances.link(1, {.reach = 10})) == Pairs{{0, 3}, {0, 4}, {1, 4}, {3, 4}});
 }
 
 TEST_CASE("members at the ends of their takes are linked by what there is of their surroundings") {

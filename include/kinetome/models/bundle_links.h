@@ -22,15 +22,15 @@ struct BundleLinkOptions {
     int64_t members = 3;        ///< of each bundle, evenly spaced, that speak for it
     int64_t candidates = 12;    ///< of each body with which a bundle is compared: those whose
                                 ///< middles are nearest
-    double company = 0.3;       ///< share of the bundles that agree with the one of two, of those
+    double company = 0.4;       ///< share of the bundles that agree with the one of two, of those
                                 ///< of the one with fewer, that must agree with the other, too
 };
 
 /// Two bundles of different subjects.
 struct BundleLink {
     int32_t first = 0, second = 0;  ///< bundles; the first is the lower one
-    double cost = 0;  ///< how far apart most members of either are, or the nearest ones where these
-                      ///< do not agree: 0 to 1
+    double cost = 0;  ///< how far apart most members of either are, or the nearest ones where only
+                      ///< their kinds tell that they are linked: 0 to 1
     bool operator==(const BundleLink&) const = default;
 };
 
@@ -63,8 +63,13 @@ struct BundleLinks {
 /// kind of motion. A bundle is linked with the nearest of each other body that agrees with it
 /// (ties: the lower one), if they keep company, unless that one is nearer to another kind of motion
 /// of the first's body: what that body does otherwise tells apart better than any distance between
-/// two bodies. What is then without a link to a body is linked with the bundle there of which a
-/// member is nearest, if one is near and of a kind that is linked with its own.
+/// two bodies. What is then without a link is linked with the nearest, by any member, of those
+/// bundles of other bodies that are near and of a kind that is linked with its own.
+///
+/// No two are linked that more third bodies speak against than for. A body speaks for two when a
+/// bundle of it has a member near to each of them; against them when a bundle of it agrees with one
+/// and is no farther from it, by most members, than the two are from each other, but none agrees
+/// with both.
 ///
 /// Every rank calls with the same; the result is the same at each, for any number of them and of
 /// threads. Throws std::invalid_argument when the lists disagree and for options that are not
