@@ -176,7 +176,11 @@ void print(const Options& options) {
         {{"default", {}, {}},
          {"depth:2", {.depth = 2}, {}},
          {"S1's τ, depth:2", {.depth = 2, .step_quantile = 1}, {.tau_quantile = 0.5}},
-         {"paper", {.spread = BundleSpread::closure, .step_quantile = 1}, {.tau_quantile = 0.5}}}};
+         {"paper",
+          {.spread = BundleSpread::closure,
+           .step_quantile = 1,
+           .member_length = MemberLength::mean},
+          {.tau_quantile = 0.5}}}};
     for (const Settings& settings : all) {
         for (const int64_t clusters : {500, 250, 175, 100, 75, 50, 25, 12}) {
             double mean = 0, most = 0, coverage = 0;

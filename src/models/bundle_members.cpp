@@ -29,9 +29,21 @@ void MemberChoice::take(const Candidate& candidate) {
 
 BundleMembers MemberChoice::choose(const Substring& reference, double gamma) {
     const int64_t wanted = half_frames(string_, reference);
-    taken_.clear();
     take({wanted, reference});
-    // Candidates are sorted by length: runs of equal ones are met from the reference's on, going to
+    take_nearest(wanted);
+    return taken_within(gamma);
+}
+
+BundleMembers MemberChoice::choose_by_mean(double gamma) {
+    const auto count = static_cast<int64_t>(candidates_.size());
+    int64_t sum = 0;
+    for (const Candidate& candidate : candidates_) sum += candidate.half_frames;
+    take_nearest((2 * sum + count) / (2 * count));
+    return taken_within(gamma);
+}
+
+void MemberChoice::take_nearest(int64_t wanted) {
+    // Candidates are sorted by length: runs of equal ones are met from that length on, going to
     // both sides by whichever ratio is nearer to 1.
     const auto run_begin = [&](size_t i) {
         while (i > 0 && candidates_[i - 1].half_frames == candidates_[i].half_frames) --i;
@@ -54,6 +66,9 @@ BundleMembers MemberChoice::choose(const Substring& reference, double gamma) {
             take(candidates_[longer++]);
         }
     }
+}
+
+BundleMembers MemberChoice::taken_within(double gamma) {
     int64_t sum = 0;
     for (const Candidate& candidate : taken_) {
         used_.erase(candidate.substring);
@@ -69,6 +84,7 @@ BundleMembers MemberChoice::choose(const Substring& reference, double gamma) {
         bundle.members.push_back(candidate.substring);
         kept += candidate.half_frames;
     }
+    taken_.clear();
     std::ranges::sort(bundle.members);
     if (!bundle.members.empty())
         bundle.mean_frames =

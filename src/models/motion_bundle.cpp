@@ -95,8 +95,11 @@ class BundleFinder {
             for (const Substring& reference : references(all[w], similar, seed)) {
                 done[static_cast<size_t>(std::ranges::lower_bound(all, reference) - all.begin())] =
                     true;
-                improve(best, reference);
+                if (options_.member_length == MemberLength::seed)
+                    improve(best, reference, choice_.choose(reference, options_.gamma));
             }
+            if (options_.member_length == MemberLength::mean)
+                improve(best, all[w], choice_.choose_by_mean(options_.gamma));
         }
         return std::move(best.members);
     }
@@ -117,8 +120,7 @@ class BundleFinder {
         return found;
     }
 
-    void improve(Best& best, const Substring& reference) {
-        BundleMembers bundle = choice_.choose(reference, options_.gamma);
+    void improve(Best& best, const Substring& reference, BundleMembers bundle) const {
         const auto height = static_cast<int64_t>(bundle.members.size());
         if (height < 2) return;
         const double volume = bundle_volume(height, bundle.mean_frames, options_.rho);

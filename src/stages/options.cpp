@@ -14,6 +14,8 @@ constexpr std::array partition_names = {std::pair{"none", PartitionRule::none},
 constexpr std::array count_rule_names = {std::pair{"ratio", ClusterCountRule::ratio},
                                          std::pair{"bic", ClusterCountRule::bic}};
 
+constexpr std::array member_length_names = {std::pair{"seed", MemberLength::seed},
+                                            std::pair{"mean", MemberLength::mean}};
 constexpr std::array leaf_rule_names = {std::pair{"rms", LeafRule::rms},
                                         std::pair{"max", LeafRule::maximum}};
 constexpr std::array map_rule_names = {std::pair{"shrinkage", MarkerMapRule::shrinkage},
@@ -109,6 +111,9 @@ std::vector<OptionRow> option_rows(ReindexOptions& o) {
         number("step-quantile", "bundles", o.bundles.step_quantile,
                "letters that differ by more than this share of adjacent ones are not matched; "
                "1: tau alone tells"),
+        choice("member-length", "bundles", o.bundles.member_length, member_length_names,
+               "of similar motions that overlap those are members whose lengths are nearest to the "
+               "seed's, or to the mean of all"),
         number("bundle-seed", "bundles", o.bundles.seed,
                "of the instances at which bundles are sought"),
         number("bundle-sweeps", "bundles", o.bundle_ends.sweeps,
@@ -164,6 +169,7 @@ ReindexOptions paper_options() {
     options.motion_strings.tau_quantile = 0.5;             // S1 §3.6
     options.bundles.step_quantile = 1;                     // S1 Eq. 2
     options.bundles.spread = BundleSpread::closure;        // S1 Eq. 5
+    options.bundles.member_length = MemberLength::mean;    // S1 §3.4
     options.pose_hierarchy.leaf_rule = LeafRule::maximum;  // S2 §6, of any pose
     options.pose_hierarchy.overlap = 0.1;                  // S2 §4, fuzzy partition
     options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1

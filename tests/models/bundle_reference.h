@@ -135,14 +135,23 @@ class Search {
         return found;
     }
 
+    /// That members are chosen by, in frames.
+    double wanted_length(const std::set<Substring>& similar, const Substring& ref) const {
+        if (options_.member_length == kinetome::MemberLength::seed) return frames(ref);
+        double sum = 0;
+        for (const Substring& ss : similar) sum += frames(ss);
+        return std::floor(2 * sum / double(similar.size()) + 0.5) / 2;
+    }
+
     std::vector<Substring> members(const std::set<Substring>& similar, const Substring& ref) const {
         std::vector<Substring> order(similar.begin(), similar.end());
-        const double wanted = frames(ref);
+        const double wanted = wanted_length(similar, ref);
+        const bool ref_first = options_.member_length == kinetome::MemberLength::seed;
         const auto key = [&](const Substring& ss) {
             const double length = frames(ss);
             // Lengths are half frames: products of them are exact.
             const double ratio = std::max(length, wanted) / std::min(length, wanted);
-            return std::tuple(ss != ref, std::round(ratio * 1e9), length, ss);
+            return std::tuple(ref_first && ss != ref, std::round(ratio * 1e9), length, ss);
         };
         std::ranges::sort(order, {}, key);
         std::vector<Substring> taken;

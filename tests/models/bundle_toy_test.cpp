@@ -53,8 +53,8 @@ struct Toy {
         longest = longest_substring(string, 200);
     }
 
-    std::vector<SubstringBundle> bundles(double rho) const {
-        auto all = find_motion_bundles(string, accessible, longest, {.rho = rho});
+    std::vector<SubstringBundle> bundles(const MotionBundleOptions& options) const {
+        auto all = find_motion_bundles(string, accessible, longest, options);
         std::erase_if(all, [](const SubstringBundle& bundle) { return bundle.is_degenerate(); });
         return all;
     }
@@ -80,7 +80,8 @@ struct Toy {
 
 TEST_CASE("for long bundles the toy's motions come out whole, a bundle for each family") {
     const Toy toy;
-    const auto bundles = toy.bundles(2);
+    const auto spread = GENERATE(BundleSpread::depth, BundleSpread::closure);
+    const auto bundles = toy.bundles({.rho = 2, .spread = spread});
     REQUIRE(bundles.size() == families);
     for (const SubstringBundle& bundle : bundles) {
         CHECK(bundle.height() == motions_per_family);
@@ -96,7 +97,8 @@ TEST_CASE("for long bundles the toy's motions come out whole, a bundle for each 
 
 TEST_CASE("for tall bundles the toy's motions come out in parts, the one they share together") {
     const Toy toy;
-    const auto bundles = toy.bundles(1);
+    const auto length = GENERATE(MemberLength::seed, MemberLength::mean);
+    const auto bundles = toy.bundles({.rho = 1, .member_length = length});
     // What all share, and what each family has before and after it.
     REQUIRE(bundles.size() == 1 + 2 * families);
     CHECK(bundles[0].height() == families * motions_per_family);

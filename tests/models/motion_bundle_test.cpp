@@ -54,6 +54,7 @@ RandomCase random_case(uint64_t number, uint64_t most_runs = 13) {
     constexpr std::array spreads = {"closure", "closure-near", "closure-length",
                                     "depth:1", "depth:2",      "depth:3"};
     parse_spread(spreads[random.below(spreads.size())], made.options);
+    if (random.below(3) == 0) made.options.member_length = MemberLength::mean;
     made.options.rho = random.below(2) == 0 ? 1 : 2;
     made.options.gamma = random.below(3) == 0 ? 0 : 0.8;
     made.options.seed = number;

@@ -30,6 +30,8 @@ class MemberChoice {
     /// (ties: the shorter, then the first in the string), as far as they share no interval with one
     /// taken before. At last all go whose length is less than γ or more than 1/γ times the mean.
     BundleMembers choose(const Substring& reference, double gamma);
+    /// The same by the mean length of all that are similar, in whole half frames, none first.
+    BundleMembers choose_by_mean(double gamma);
 
   private:
     struct Candidate {
@@ -38,6 +40,8 @@ class MemberChoice {
         auto operator<=>(const Candidate&) const = default;
     };
     void take(const Candidate& candidate);
+    void take_nearest(int64_t half_frames);
+    BundleMembers taken_within(double gamma);
 
     const MotionString& string_;
     std::vector<Candidate> candidates_;  ///< ascending

@@ -15,6 +15,12 @@ enum class BundleSpread {
     depth,           ///< so many steps of M from the seed
 };
 
+/// Of similar substrings that overlap, those are members whose lengths are nearest to this.
+enum class MemberLength {
+    seed,  ///< the seed substring's; of equivalent ones that which makes the largest bundle
+    mean,  ///< the mean of all that are similar: S1's "average motion length" (§3.4)
+};
+
 struct MotionBundleOptions {
     double rho = 1;      ///< ρ of Eq. 3: above 1 prefers longer bundles
     double gamma = 0.8;  ///< γ: least ratio between a submotion's length and the bundle's mean
@@ -23,6 +29,7 @@ struct MotionBundleOptions {
     /// Of the steps between the means of adjacent letters: no letters farther apart are matched; 1:
     /// τ alone tells
     double step_quantile = 0.75;
+    MemberLength member_length = MemberLength::seed;  ///< that members are chosen by
     uint64_t seed = 1;  ///< names the instance of a letter to begin at
 };
 
