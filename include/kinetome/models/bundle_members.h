@@ -30,7 +30,7 @@ class MemberChoice {
     /// (ties: the shorter, then the first in the string), as far as they share no interval with one
     /// taken before. At last all go whose length is less than γ or more than 1/γ times the mean.
     BundleMembers choose(const Substring& reference, double gamma);
-    /// The same by the mean length of all that are similar, in whole half frames, none first.
+    /// The same by the mean length of all that are similar, rounded to half frames; none is first.
     BundleMembers choose_by_mean(double gamma);
 
   private:
