@@ -1,7 +1,7 @@
 // Are punches of the left and the right kept apart, by the number of pose clusters (S1 §3.6), and
 // which bundles hold them (S1 Figure 4)?
 //
-//   boxing_bench TAKE [--starts N] [--threads N]
+//   boxing_bench TAKE [--starts N] [--each] [--threads N]
 //       TAKE: an AMC of boxing, with its skeleton beside it; CMU's 14_02 is very likely S1's
 #include <fmt/format.h>
 
@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 struct Options {
     fs::path take;
     int starts = 6;
+    bool each = false;
     int threads = 2;
 };
 
@@ -172,9 +173,10 @@ void print(const Options& options) {
     fmt::print(
         "options         kappa frames/cluster  mixed   most cover. left         right         "
         "bundles that are punches\n");
-    const std::array<Settings, 4> all = {
+    const std::array<Settings, 5> all = {
         {{"default", {}, {}},
          {"depth:2", {.depth = 2}, {}},
+         {"depth:2, mean", {.depth = 2, .member_length = MemberLength::mean}, {}},
          {"S1's τ, depth:2", {.depth = 2, .step_quantile = 1}, {.tau_quantile = 0.5}},
          {"paper",
           {.spread = BundleSpread::closure,
@@ -210,6 +212,9 @@ void print(const Options& options) {
                 const auto punches = of_punches(found);
                 if (start == 1) bundles_of_first = largest(punches);
                 best.consider(punches);
+                if (options.each)
+                    fmt::print("    start {:>2}: {:.3f} mixed,{}\n", start, share,
+                               largest(punches));
             }
             fmt::print("{:<15} {:>5} {:>14.0f} {:>6.3f} {:>6.3f} {:>6.3f} {:<12} {:<12} {}\n",
                        settings.name, clusters,
@@ -228,6 +233,7 @@ int main(int argc, char** argv) {
     bench::Program program("Bundles of punches: left and right by number of clusters (S1 3.6)");
     program.argument("TAKE", options.take, "AMC of boxing, its skeleton beside it");
     program.count("--starts", options.starts, "of EM");
+    program.flag("--each", options.each, "start's bundles, not the first's alone");
     program.count("--threads", options.threads, "threads");
     return program.run(argc, argv, [&] {
         print(options);

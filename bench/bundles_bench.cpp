@@ -1,9 +1,9 @@
 // How pure, wide and tall are motion bundles, and how fast are they found?
 //
 //   bundles_bench CORPUS TRUTH [--set takes|subjects|corpus|known] [--starts N] [--spread S]
-//       [--tau-quantile Q] [--step-quantile Q] [--mean-length] [--threads N] [--curve] [--noise]
-//       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
-//       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
+//       [--tau-quantile Q] [--step-quantile Q] [--member-length L] [--threads N] [--curve]
+//       [--noise] CORPUS: a folder with NN/NN.asf and NN/NN_*.amc TRUTH: CSV of its annotated
+//       activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct Options {
     int starts = 12;
     int threads = 2;
     std::string spread;
-    bool curve = false, mean_length = false;
+    bool curve = false;
     bool noise = false;  ///< S1 §5.1's, on the annotated takes
     Setting setting;     ///< where nothing else is tried
 };
@@ -337,7 +337,7 @@ void judge_corpus(const Options& options, bool by_subject) {
 
 int main(int argc, char** argv) {
     Options options;
-    std::string set = "takes";
+    std::string set = "takes", member_length = "seed";
     bench::Program program(
         "How pure, wide and tall are motion bundles, and how fast are they found?");
     program.argument("corpus", options.corpus, "folder with NN/NN.asf and NN/NN_*.amc");
@@ -348,13 +348,14 @@ int main(int argc, char** argv) {
     program.option("--spread", options.spread, "as that of kinetome reindex");
     program.option("--tau-quantile", options.setting.tau_quantile);
     program.option("--step-quantile", options.setting.bundles.step_quantile);
-    program.flag("--mean-length", options.mean_length,
-                 "members by the mean length of what is similar");
-    program.flag("--curve", options.curve, "by spread, quantiles, τ and γ");
+    program.choice("--member-length", member_length, {"seed", "mean"},
+                   "as that of kinetome reindex");
+    program.flag("--curve", options.curve,
+                 "by spread, quantiles, τ and γ, the others at their defaults");
     program.flag("--noise", options.noise, "a tenth of σ on every column of the annotated takes");
     return program.run(argc, argv, [&] {
         if (!options.spread.empty()) parse_spread(options.spread, options.setting.bundles);
-        if (options.mean_length) options.setting.bundles.member_length = MemberLength::mean;
+        if (member_length == "mean") options.setting.bundles.member_length = MemberLength::mean;
         if (set == "takes") judge_labelled_takes(options);
         if (set == "subjects") judge_corpus(options, true);
         if (set == "known") describe_known_takes(options);

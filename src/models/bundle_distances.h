@@ -35,7 +35,7 @@ struct BundleDistance {
     double nearest = 0;             ///< by the members of either that are nearest to the other
     double most = 0;                ///< within which most members of either are from the other
 
-    bool agree() const { return most <= farthest; }  ///< do most members of either?
+    bool agree() const { return most <= farthest; }  ///< are most members of either near?
 };
 
 struct BundleDistances {

@@ -1,6 +1,7 @@
 #include "kinetome/models/bundle_links.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -150,19 +151,19 @@ class Linking {
         for (const BundleDistance& pair : distances_.within) {
             if (of_one_body(pair) || !linked_kinds.contains(kinds_of(pair.first, pair.second)))
                 continue;
-            const auto improves = [&](int32_t one, int32_t other) {
-                return !is_linked[static_cast<size_t>(one)] &&
-                       Near{subject(other), other, pair.nearest}.nearer_than(
-                           nearest[static_cast<size_t>(one)]);
+            const std::array there = {Near{subject(pair.second), pair.second, pair.nearest},
+                                      Near{subject(pair.first), pair.first, pair.nearest}};
+            const std::array of = {static_cast<size_t>(pair.first),
+                                   static_cast<size_t>(pair.second)};
+            const auto improves = [&](size_t i) {
+                return !is_linked[of[i]] && there[i].nearer_than(nearest[of[i]]);
             };
-            const bool first = improves(pair.first, pair.second),
-                       second = improves(pair.second, pair.first);
-            if (!(first || second) || neighbours_.contradict(pair.first, pair.second, pair.most))
+            if (!(improves(0) || improves(1)) ||
+                neighbours_.contradict(pair.first, pair.second, pair.most))
                 continue;
-            if (first)
-                nearest[size_t(pair.first)] = {subject(pair.second), pair.second, pair.nearest};
-            if (second)
-                nearest[size_t(pair.second)] = {subject(pair.first), pair.first, pair.nearest};
+            for (const size_t i : {0, 1}) {
+                if (improves(i)) nearest[of[i]] = there[i];
+            }
         }
         for (int32_t a = 0; a < static_cast<int32_t>(nearest.size()); ++a) {
             const Near& other = nearest[static_cast<size_t>(a)];

@@ -32,8 +32,6 @@ BundleNeighbours::BundleNeighbours(std::span<const BundleDistance> within,
     for (auto& of_one : neighbours_) std::ranges::sort(of_one, {}, &Neighbour::place);
 }
 
-/// Calls visit(one, other) for every bundle that is a neighbour of either, by subject and bundle,
-/// with null for what it is no neighbour of.
 template <class Visit>
 void BundleNeighbours::visit_neighbours_of_either(int32_t a, int32_t b, const Visit& visit) const {
     auto one = of(a).begin(), other = of(b).begin();

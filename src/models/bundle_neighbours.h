@@ -10,7 +10,8 @@
 
 namespace kinetome {
 
-/// Bundles are named by their places in Speakers.
+/// Of each bundle those that have a member near it, of all bodies: two bundles are told apart by
+/// what others have in common with them. Bundles are named by their places in Speakers.
 class BundleNeighbours {
   public:
     /// `within` is that of BundleDistances, `subject_of` that of Speakers.
@@ -40,6 +41,8 @@ class BundleNeighbours {
         return neighbours_[static_cast<size_t>(bundle)];
     }
 
+    /// Calls visit(one, other) for every bundle that is a neighbour of either, by subject and
+    /// bundle, with null for what it is no neighbour of.
     template <class Visit>
     void visit_neighbours_of_either(int32_t a, int32_t b, const Visit& visit) const;
 

@@ -92,14 +92,15 @@ class BundleFinder {
             const std::vector<Substring> similar = similar_.find(all[w]);
             if (similar.size() < 2) continue;
             choice_.consider(similar);
-            for (const Substring& reference : references(all[w], similar, seed)) {
-                done[static_cast<size_t>(std::ranges::lower_bound(all, reference) - all.begin())] =
-                    true;
-                if (options_.member_length == MemberLength::seed)
-                    improve(best, reference, choice_.choose(reference, options_.gamma));
-            }
-            if (options_.member_length == MemberLength::mean)
+            const std::vector<Substring> equivalent = references(all[w], similar, seed);
+            for (const Substring& one : equivalent)
+                done[static_cast<size_t>(std::ranges::lower_bound(all, one) - all.begin())] = true;
+            if (options_.member_length == MemberLength::mean) {
                 improve(best, all[w], choice_.choose_by_mean(options_.gamma));
+                continue;
+            }
+            for (const Substring& reference : equivalent)
+                improve(best, reference, choice_.choose(reference, options_.gamma));
         }
         return std::move(best.members);
     }

@@ -169,7 +169,7 @@ ReindexOptions paper_options() {
     options.motion_strings.tau_quantile = 0.5;             // S1 §3.6
     options.bundles.step_quantile = 1;                     // S1 Eq. 2
     options.bundles.spread = BundleSpread::closure;        // S1 Eq. 5
-    options.bundles.member_length = MemberLength::mean;    // S1 §3.4
+    options.bundles.member_length = MemberLength::mean;    // S1 §3.4, Figure 4
     options.pose_hierarchy.leaf_rule = LeafRule::maximum;  // S2 §6, of any pose
     options.pose_hierarchy.overlap = 0.1;                  // S2 §4, fuzzy partition
     options.pose_hierarchy.maps.rule = MarkerMapRule::least_squares;  // S2 Eq. 1

@@ -175,6 +175,7 @@ TEST_CASE("an option redoes only what depends on it, and the log tells which", "
                     "option tau-quantile was 0.75, is 0.5"},
              Change{"--spread", "closure", "bundles", "option spread was depth:1, is closure"},
              Change{"--step-quantile", "1", "bundles", "option step-quantile was 0.75, is 1"},
+             Change{"--member-length", "mean", "bundles", "option member-length was seed, is mean"},
              Change{"--radius", "60", "neighbors", "option radius was 72, is 60"},
              Change{"--method", "region-growing", "segments",
                     "option method was repetition, is region-growing"},

@@ -95,6 +95,20 @@ TEST_CASE("for long bundles the toy's motions come out whole, a bundle for each 
     }
 }
 
+TEST_CASE(
+    "by the mean length of variants the toy's long motions come out in parts, families apart") {
+    // What the default is the seed's length for; S1's Figure 1 shows them whole.
+    const Toy toy;
+    const auto bundles = toy.bundles(
+        {.rho = 2, .spread = BundleSpread::closure, .member_length = MemberLength::mean});
+    CHECK(bundles.size() > families);
+    for (const SubstringBundle& bundle : bundles) {
+        const auto motions = toy.motions_in(bundle);
+        for (const int32_t motion : motions)
+            CHECK(motion % families == *motions.begin() % families);
+    }
+}
+
 TEST_CASE("for tall bundles the toy's motions come out in parts, the one they share together") {
     const Toy toy;
     const auto length = GENERATE(MemberLength::seed, MemberLength::mean);

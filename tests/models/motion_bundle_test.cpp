@@ -69,7 +69,8 @@ TEST_CASE("bundles are those that S1 defines, searched without any shortcut") {
         const RandomCase one = random_case(number);
         const auto found =
             find_motion_bundles(one.string, one.accessibility, one.longest, one.options);
-        INFO("case " << number << ", " << spread_text(one.options));
+        INFO("case " << number << ", " << spread_text(one.options) << ", member length "
+                     << int(one.options.member_length));
         REQUIRE(found ==
                 reference::motion_bundles(one.string, one.accessibility, one.longest, one.options));
         for (const SubstringBundle& bundle : found) several += !bundle.is_degenerate();

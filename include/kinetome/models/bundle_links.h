@@ -58,15 +58,17 @@ struct BundleLinks {
 ///
 /// A bundle is compared with `candidates` of each body, those which look nearest by middles of
 /// members, and with those of which it is one. Two that agree keep company when they agree with
-/// `company` of the same ones: shared neighbours tell more than distances do (Jarvis & Patrick
-/// 1973). Bundles of one body that agree and keep company, and those that do so with these, are one
-/// kind of motion. A bundle is linked with the nearest of each other body that agrees with it
-/// (ties: the lower one), if they keep company, unless that one is nearer to another kind of motion
-/// of the first's body: what that body does otherwise tells apart better than any distance between
-/// two bodies. What is then without a link is linked with the nearest, by any member, of those
-/// bundles of other bodies that are near and of a kind that is linked with its own.
+/// `company` of the same ones, or when either agrees with fewer than two others: shared neighbours
+/// tell more than distances do (Jarvis & Patrick 1973). Bundles of one body that agree and keep
+/// company, and those that do so with these, are one kind of motion. A bundle is linked with the
+/// nearest of each other body that agrees with it (ties: the lower one), if they keep company,
+/// unless that one is nearer to another kind of motion of the first's body: what that body does
+/// otherwise tells apart better than any distance between two bodies. What is then without a link
+/// is linked with the nearest, by any member (ties: the lower one), of those bundles of other
+/// bodies that are near, of a kind that is linked with its own, and not contradicted.
 ///
-/// No two are linked that more third bodies speak against than for. A body speaks for two when a
+/// Two are contradicted, and never linked, when more third bodies speak against than for them. A
+/// body speaks for two when a
 /// bundle of it has a member near to each of them; against them when a bundle of it agrees with one
 /// and is no farther from it, by most members, than the two are from each other, but none agrees
 /// with both.

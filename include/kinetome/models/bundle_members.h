@@ -30,7 +30,8 @@ class MemberChoice {
     /// (ties: the shorter, then the first in the string), as far as they share no interval with one
     /// taken before. At last all go whose length is less than γ or more than 1/γ times the mean.
     BundleMembers choose(const Substring& reference, double gamma);
-    /// The same by the mean length of all that are similar, rounded to half frames; none is first.
+    /// The same by the mean length of all that are similar, which must be some: rounded to half
+    /// frames, up from the middle, as all lengths are. No substring is preferred.
     BundleMembers choose_by_mean(double gamma);
 
   private:
@@ -40,7 +41,7 @@ class MemberChoice {
         auto operator<=>(const Candidate&) const = default;
     };
     void take(const Candidate& candidate);
-    void take_nearest(int64_t half_frames);
+    void take_nearest(int64_t wanted);
     BundleMembers taken_within(double gamma);
 
     const MotionString& string_;

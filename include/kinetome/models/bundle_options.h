@@ -15,10 +15,13 @@ enum class BundleSpread {
     depth,           ///< so many steps of M from the seed
 };
 
-/// Of similar substrings that overlap, those are members whose lengths are nearest to this.
+/// Of similar substrings that overlap, those are members whose lengths are nearest to this. γ is
+/// held against the mean of the members either way.
 enum class MemberLength {
-    seed,  ///< the seed substring's; of equivalent ones that which makes the largest bundle
-    mean,  ///< the mean of all that are similar: S1's "average motion length" (§3.4)
+    seed,  ///< the seed substring's, which is a member; where several are equivalent, that of the
+           ///< one with the largest bundle
+    mean,  ///< the mean of all that are similar, which S1 §3.4 speaks of; no member need hold the
+           ///< seed
 };
 
 struct MotionBundleOptions {
