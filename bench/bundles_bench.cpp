@@ -1,9 +1,10 @@
 // How pure, wide and tall are motion bundles, and how fast are they found?
 //
 //   bundles_bench CORPUS TRUTH [--set takes|subjects|corpus|known] [--starts N] [--spread S]
-//       [--tau-quantile Q] [--step-quantile Q] [--member-length L] [--threads N] [--curve]
-//       [--noise] CORPUS: a folder with NN/NN.asf and NN/NN_*.amc TRUTH: CSV of its annotated
-//       activities (clip,first,end,label,end_lo,end_hi)
+//       [--tau-quantile Q] [--step-quantile Q] [--member-length L]
+//       [--threads N] [--curve] [--noise]
+//       CORPUS: a folder with NN/NN.asf and NN/NN_*.amc
+//       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 #include <fmt/format.h>
 
 #include <algorithm>
