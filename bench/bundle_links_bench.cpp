@@ -8,18 +8,21 @@
 //       TRUTH: CSV of its annotated activities (clip,first,end,label,end_lo,end_hi)
 //
 // A bundle has a label when it fills 0.9 of its frames; it counts when another subject has a bundle
-// of that label. Performances of one label may be of forms that share no movement, such as hooks
-// and straight punches: those that count by form are bundles of which another subject has the form,
-// too.
+// of that label. A link that joins different labels is in a blend when one label fills as much of
+// both bundles, frames between two activities being of either. Performances of one label may be of
+// forms that share no movement, such as hooks and straight punches: those that count by form are
+// bundles of which another subject has the form, too.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "activity_blends.h"
 #include "activity_form.h"
 #include "cost.h"
 #include "generated_corpus.h"
@@ -54,31 +57,41 @@ struct SubjectBundles {
     std::vector<int32_t> subject_of_clip;
     std::vector<BundleMember> members;  ///< in rows
     std::vector<int32_t> subject_of, label_of, form_of;
-    std::vector<std::string> labels;  ///< by number
+    std::vector<std::set<int32_t>> labels_with_blends;  ///< frames of a blend being of both
+    std::vector<std::string> labels;                    ///< by number
 };
 
 /// Of one take each, by frame.
 struct Truth {
-    std::vector<FrameClasses> labels, forms;
+    std::vector<FrameClasses> labels, blends, forms;
 };
 
-/// The label that fills enough of a bundle.
-int32_t label_of(const MotionString& string, const SubstringBundle& bundle,
-                 std::span<const FrameClasses> classes) {
+/// Labels that fill enough of a bundle, a frame being of all `by_frame` say.
+std::set<int32_t> labels_of(const MotionString& string, const SubstringBundle& bundle,
+                            std::initializer_list<std::span<const FrameClasses>> by_frame) {
     std::map<int32_t, int64_t> counts;
     int64_t frames = 0;
     for (const Substring& member : bundle.members) {
         const auto clip = static_cast<size_t>(string.clip[static_cast<size_t>(member.first)]);
         const auto end = std::lround(string.mean_frame(member.last));
         for (auto frame = std::lround(string.mean_frame(member.first)); frame < end; ++frame) {
-            ++counts[classes[clip][static_cast<size_t>(frame)]];
+            for (const auto& classes : by_frame)
+                ++counts[classes[clip][static_cast<size_t>(frame)]];
             ++frames;
         }
     }
+    std::set<int32_t> labels;
     for (const auto& [label, count] : counts) {
-        if (double(count) >= labelled_share * double(frames)) return label;
+        if (label != no_class && double(count) >= labelled_share * double(frames))
+            labels.insert(label);
     }
-    return no_class;
+    return labels;
+}
+
+int32_t label_of(const MotionString& string, const SubstringBundle& bundle,
+                 std::span<const FrameClasses> classes) {
+    const std::set<int32_t> labels = labels_of(string, bundle, {classes});
+    return labels.empty() ? no_class : *labels.begin();
 }
 
 /// Bundles of takes of one subject.
@@ -114,6 +127,7 @@ void add_subject(const std::vector<Clip>& clips, const Truth& truth, int32_t sub
         }
         all.subject_of.push_back(subject);
         all.label_of.push_back(label_of(string, bundle, truth.labels));
+        all.labels_with_blends.push_back(labels_of(string, bundle, {truth.labels, truth.blends}));
         all.form_of.push_back(label_of(string, bundle, truth.forms));
     }
 }
@@ -139,6 +153,7 @@ SubjectBundles of_generated(const Options& options, uint64_t seed) {
         while (end < corpus.plans.size() &&
                corpus.plans[end].subject == corpus.plans[begin].subject) {
             truth.labels.push_back(corpus.classes[end]);
+            truth.blends.push_back(corpus.blends[end]);
             truth.forms.push_back(forms_of(corpus.plans[end], forms));
             ++end;
         }
@@ -150,23 +165,23 @@ SubjectBundles of_generated(const Options& options, uint64_t seed) {
 }
 
 /// Labels of the frames at the pose rate, which truth counts at too.
-FrameClasses classes_of(const Clip& clip, const std::string& name,
-                        const std::vector<TruthRow>& truth,
-                        std::map<std::string, int32_t>& numbers) {
-    FrameClasses classes(size_t(clip.frames()), no_class);
-    for (const TruthRow& row : truth) {
-        if (row.clip != name) continue;
+void add_labels(const Clip& clip, std::span<const TruthRow> rows,
+                std::map<std::string, int32_t>& numbers, Truth& truth) {
+    auto& classes = truth.labels.emplace_back(size_t(clip.frames()), no_class);
+    for (const TruthRow& row : rows) {
         const int32_t number = numbers.emplace(row.label, int32_t(numbers.size())).first->second;
         for (int64_t frame = row.first; frame < std::min(row.end, clip.frames()); ++frame)
             classes[size_t(frame)] = number;
     }
-    return classes;
+    truth.blends.push_back(bench::blended_with(rows, clip.frames(), numbers));
 }
 
 /// Subjects are the folders.
 SubjectBundles of_takes(const Options& options) {
-    const std::vector<TruthRow> truth =
-        parse_truth_csv(read_source_file(options.truth), options.truth.string());
+    std::map<std::string, std::vector<TruthRow>> rows_of;
+    for (const TruthRow& row :
+         parse_truth_csv(read_source_file(options.truth), options.truth.string()))
+        rows_of[row.clip].push_back(row);
     std::map<std::string, std::vector<fs::path>> subjects;
     for (const fs::path& file : bench::amc_files(options.corpus))
         subjects[file.parent_path().filename().string()].push_back(file);
@@ -176,12 +191,13 @@ SubjectBundles of_takes(const Options& options) {
     for (auto& [name, files] : subjects) {
         std::ranges::sort(files);
         std::vector<Clip> clips;
-        std::vector<FrameClasses> classes;
+        Truth truth;
         for (const fs::path& file : files) {
             clips.push_back(resample(bench::read_take(file), bench::pose_rate));
-            classes.push_back(classes_of(clips.back(), file.stem().string(), truth, numbers));
+            add_labels(clips.back(), rows_of[file.stem().string()], numbers, truth);
         }
-        add_subject(clips, {classes, classes}, subject++, options.threads, all);
+        truth.forms = truth.labels;
+        add_subject(clips, truth, subject++, options.threads, all);
     }
     all.labels.resize(numbers.size());
     for (const auto& [label, number] : numbers) all.labels[size_t(number)] = label;
@@ -220,6 +236,7 @@ struct Judgement {
     int64_t labelled = 0;  ///< links between bundles with labels
     Linked by_label, by_form;
     std::map<std::pair<std::string, std::string>, int64_t> different;  ///< links between labels
+    int64_t in_blends = 0;                                             ///< of those
 
     int64_t wrong() const {
         int64_t count = 0;
@@ -227,6 +244,12 @@ struct Judgement {
         return count;
     }
 };
+
+bool share_label(const SubjectBundles& all, const BundleLink& link) {
+    const auto& there = all.labels_with_blends[size_t(link.second)];
+    return std::ranges::any_of(all.labels_with_blends[size_t(link.first)],
+                               [&](int32_t label) { return there.contains(label); });
+}
 
 Judgement judge(const Options& options, const SubjectBundles& all) {
     BundleLinks links;
@@ -240,9 +263,12 @@ Judgement judge(const Options& options, const SubjectBundles& all) {
         const int32_t a = all.label_of[size_t(link.first)], b = all.label_of[size_t(link.second)];
         if (a == no_class || b == no_class) continue;
         ++judgement.labelled;
-        if (a == b) linked.insert({link.first, link.second});
-        if (a != b)
-            ++judgement.different[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
+        if (a == b) {
+            linked.insert({link.first, link.second});
+            continue;
+        }
+        ++judgement.different[std::minmax(all.labels[size_t(a)], all.labels[size_t(b)])];
+        judgement.in_blends += share_label(all, link);
     }
     judgement.usual_cost = links.usual_cost;
     judgement.cpu = cost.cpu;
@@ -254,11 +280,11 @@ Judgement judge(const Options& options, const SubjectBundles& all) {
 }
 
 void print(const std::string& name, const Judgement& judgement) {
-    fmt::print("{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>7} {:>7.3f} {:>9} {:>7.1f}\n",
-               name, judgement.bundles, judgement.by_label.counted, judgement.usual_cost,
-               judgement.links, judgement.labelled, judgement.by_label.share(),
-               judgement.by_form.counted, judgement.by_form.share(), judgement.wrong(),
-               judgement.cpu);
+    fmt::print(
+        "{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>7} {:>7.3f} {:>9} {:>6} {:>7.1f}\n",
+        name, judgement.bundles, judgement.by_label.counted, judgement.usual_cost, judgement.links,
+        judgement.labelled, judgement.by_label.share(), judgement.by_form.counted,
+        judgement.by_form.share(), judgement.wrong(), judgement.in_blends, judgement.cpu);
     for (const auto& [labels, count] : judgement.different)
         fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
     std::fflush(stdout);
@@ -268,25 +294,29 @@ void print(const std::string& name, const Judgement& judgement) {
 void print_all(const std::vector<Judgement>& corpora) {
     constexpr double asked = 0.9;
     Linked by_label, by_form;
-    int64_t labelled = 0, wrong = 0;
+    int64_t labelled = 0, wrong = 0, in_blends = 0;
     double least = 1;
     for (const Judgement& one : corpora) {
         by_label += one.by_label;
         by_form += one.by_form;
         labelled += one.labelled;
         wrong += one.wrong();
+        in_blends += one.in_blends;
         least = std::min(least, one.by_label.share());
     }
     const auto count = [&](const auto& is) { return std::ranges::count_if(corpora, is); };
     const auto is_linked = [](const Judgement& one) { return one.by_label.share() >= asked; };
-    const auto is_clean = [](const Judgement& one) { return one.wrong() == 0; };
+    const auto has_none = [](const Judgement& one) { return one.wrong() == 0; };
+    const auto has_none_but_in_blends = [](const Judgement& one) {
+        return one.wrong() == one.in_blends;
+    };
     fmt::print(
         "all {} corpora: {:.3f} of {} bundles linked (least {:.3f}), by form {:.3f} of {}\n"
-        "{} of {} links join different labels\n"
-        "nine of ten linked in {}, no different labels in {}, both in {}\n",
+        "{} of {} links join different labels, {} of them in blends\n"
+        "nine of ten linked in {}; no different labels in {}, none outside blends in {}\n",
         corpora.size(), by_label.share(), by_label.counted, least, by_form.share(), by_form.counted,
-        wrong, labelled, count(is_linked), count(is_clean),
-        count([&](const Judgement& one) { return is_linked(one) && is_clean(one); }));
+        wrong, labelled, in_blends, count(is_linked), count(has_none),
+        count(has_none_but_in_blends));
 }
 
 }  // namespace
@@ -307,8 +337,8 @@ int main(int argc, char** argv) {
     program.count("--threads", options.threads);
     return program.run(argc, argv, [&] {
         fmt::print(
-            "seed bundles counted usual cost  links labelled  linked by form  linked different   "
-            "cpu s\n");
+            "seed bundles counted usual cost  links labelled  linked by form  linked different "
+            "blends   cpu s\n");
         if (!options.corpus.empty()) {
             print("-", judge(options, of_takes(options)));
             return true;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "activity_blends.h"
 #include "kinetome/base/parallel.h"
 #include "kinetome/models/bundle_score.h"
 #include "kinetome/synthesis/corpus_generator.h"
@@ -18,6 +19,7 @@ struct GeneratedCorpus {
     std::vector<Clip> clips;
     std::vector<std::string> labels;    ///< by class
     std::vector<FrameClasses> classes;  ///< by take
+    std::vector<FrameClasses> blends;   ///< by take: blended_with
 
     GeneratedCorpus(int64_t frames, int64_t subjects, uint64_t seed, int threads) {
         const std::vector<int64_t> lengths = take_lengths(frames, seed);
@@ -37,11 +39,13 @@ struct GeneratedCorpus {
         std::map<std::string, int32_t> numbers;
         for (const TakePlan& plan : plans) {
             auto& of_take = classes.emplace_back(size_t(plan.frames), no_class);
-            for (const TruthRow& row : annotate(plan).truth) {
+            const std::vector<TruthRow> truth = annotate(plan).truth;
+            for (const TruthRow& row : truth) {
                 const auto [label, is_new] = numbers.emplace(row.label, int32_t(labels.size()));
                 if (is_new) labels.push_back(row.label);
                 std::fill(of_take.begin() + row.first, of_take.begin() + row.end, label->second);
             }
+            blends.push_back(blended_with(truth, plan.frames, numbers));
         }
     }
 

@@ -204,6 +204,21 @@ TEST_CASE("two that agree are not linked where a third body has what is nearer t
     CHECK(pairs_of(performances.link(1, {.reach = 10})).contains({0, 1}));
 }
 
+TEST_CASE("a third body that speaks for two and against them tells nothing") {
+    for (const bool near_both : {false, true}) {
+        Performances performances;
+        performances.add(0, {.extent = 1.5}, 0, 0);
+        performances.add(1, {.extent = 2.2}, 0, 0);
+        performances.add(2, {.extent = 1.1}, 0, 0);  // against them: nearer to the first
+        // By one member for them, though it agrees with neither.
+        if (near_both)
+            performances.add_uneven(2, 1.8, 5);
+        else
+            performances.add_uneven(2, 5, 8.2);
+        CHECK(pairs_of(performances.link(1, {.reach = 10})).contains({0, 1}) == near_both);
+    }
+}
+
 TEST_CASE("what few members make near is linked where its kind of motion is") {
     for (const bool with_kin : {false, true}) {
         Performances performances;

@@ -68,10 +68,9 @@ struct BundleLinks {
 /// bodies that are near, of a kind that is linked with its own, and not contradicted.
 ///
 /// Two are contradicted, and never linked, when more third bodies speak against than for them. A
-/// body speaks for two when a
-/// bundle of it has a member near to each of them; against them when a bundle of it agrees with one
-/// and is no farther from it, by most members, than the two are from each other, but none agrees
-/// with both.
+/// body speaks for two when a bundle of it has a member near to each of them; against them when a
+/// bundle of it agrees with one and is no farther from it, by most members, than the two are from
+/// each other, but none agrees with both.
 ///
 /// Every rank calls with the same; the result is the same at each, for any number of them and of
 /// threads. Throws std::invalid_argument when the lists disagree and for options that are not
