@@ -5,9 +5,11 @@
 #include <numbers>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "clip_rows.h"
 #include "kinetome/features/root_motion.h"
+#include "kinetome/math/quantiles.h"
 
 namespace kinetome {
 
@@ -41,10 +43,8 @@ void unwrap(std::span<double> angles) {
 /// Clips of one class then agree on the turn they count from.
 void shift_median_towards_zero(std::span<double> angles) {
     if (angles.empty()) return;
-    std::vector<double> sorted(angles.begin(), angles.end());
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double shift = full_turn * std::round(*middle / full_turn);
+    const double median = lower_quantile(std::vector(angles.begin(), angles.end()), 0.5);
+    const double shift = full_turn * std::round(median / full_turn);
     for (double& angle : angles) angle -= shift;
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "kinetome/math/quantiles.h"
 
 namespace kinetome {
 
@@ -21,9 +24,7 @@ double median_frame_distance(const MatrixFView& features) {
             squares.push_back((frames.row(i) - frames.row(j)).squaredNorm());
         }
     }
-    const auto middle = squares.begin() + (static_cast<int64_t>(squares.size()) - 1) / 2;
-    std::nth_element(squares.begin(), middle, squares.end());
-    return std::sqrt(*middle);
+    return std::sqrt(lower_quantile(std::move(squares), 0.5));
 }
 
 double adapted_radius(const MatrixFView& features, double radius,

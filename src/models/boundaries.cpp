@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame_count.h"
+#include "kinetome/math/quantiles.h"
 #include "path_costs.h"
 
 namespace kinetome {
@@ -24,12 +25,6 @@ double least_cost(const CostRow& costs, int64_t frame, const RowRange& columns, 
     return double(least);
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<int64_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
-
 /// How unlike an activity each of some frames is: the negative logarithm of an exponential density
 /// whose scale is what its own frames have in the median.
 struct Unlikeness {
@@ -45,7 +40,7 @@ struct Unlikeness {
     }
     void scale_by_own(double least_scale) {
         const auto first = of_frames.begin();
-        const double own = median({first + activity.first, first + activity.end});
+        const double own = upper_median<double>({first + activity.first, first + activity.end});
         const double scale = std::max(own, least_scale);
         for (double& value : of_frames) value = value / scale + std::log(scale);
     }

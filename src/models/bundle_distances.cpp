@@ -8,7 +8,7 @@
 
 #include "kinetome/base/pack_fields.h"
 #include "kinetome/base/shared_items.h"
-#include "lower_quantile.h"
+#include "kinetome/math/quantiles.h"
 #include "member_metric.h"
 
 namespace kinetome {

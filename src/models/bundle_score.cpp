@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "kinetome/base/random.h"
+#include "kinetome/math/quantiles.h"
 
 namespace kinetome {
 namespace {
@@ -99,9 +101,7 @@ BundleScore score_bundles(std::span<const MotionPiece> members, std::span<const 
         for (const int64_t length : lengths) sum += length;
         widths.push_back(share(sum, static_cast<int64_t>(lengths.size())));
     }
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
-    score.median_width = *middle;
+    score.median_width = upper_median(std::move(widths));
     return score;
 }
 

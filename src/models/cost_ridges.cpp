@@ -1,8 +1,10 @@
 #include "cost_ridges.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "frame_count.h"
+#include "kinetome/math/quantiles.h"
 #include "movement_period.h"
 #include "share_executed.h"
 
@@ -84,9 +86,7 @@ std::vector<int64_t> clearest_repetitions(const FrameDistances& activity, const 
 double median_spacing(const std::vector<int64_t>& frames) {
     std::vector<int64_t> spacings;
     for (size_t i = 1; i < frames.size(); ++i) spacings.push_back(frames[i] - frames[i - 1]);
-    const auto middle = spacings.begin() + static_cast<int64_t>(spacings.size() / 2);
-    std::ranges::nth_element(spacings, middle);
-    return double(*middle);
+    return double(upper_median(std::move(spacings)));
 }
 
 /// Cuts a stretch where its movement begins anew.

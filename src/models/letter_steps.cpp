@@ -2,8 +2,8 @@
 #include <bit>
 #include <cmath>
 
+#include "kinetome/math/quantiles.h"
 #include "kinetome/models/motion_bundle.h"
-#include "lower_quantile.h"
 
 namespace kinetome {
 namespace {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "kinetome/math/quantiles.h"
 #include "kinetome/models/pose_clusters.h"
-#include "lower_quantile.h"
 
 namespace kinetome {
 

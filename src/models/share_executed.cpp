@@ -1,8 +1,10 @@
 #include "share_executed.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "kinetome/math/quantiles.h"
 #include "path_costs.h"
 
 namespace kinetome {
@@ -22,9 +24,7 @@ double share_executed(const FrameDistances& activity, std::span<const int64_t> s
         shares.push_back(double(first + nearest + 1 - starts[s]) / double(length));
     }
     if (shares.empty()) return 1;  // it has lasted longer than any other
-    const auto median = shares.begin() + static_cast<int64_t>((shares.size() - 1) / 2);
-    std::ranges::nth_element(shares, median);
-    return *median;
+    return lower_quantile(std::move(shares), 0.5);
 }
 
 }  // namespace kinetome

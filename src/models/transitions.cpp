@@ -7,16 +7,10 @@
 #include "boundaries.h"
 #include "frame_count.h"
 #include "frame_distances.h"
+#include "kinetome/math/quantiles.h"
 
 namespace kinetome {
 namespace {
-
-template <class Value>
-Value median(std::vector<Value> values) {
-    const auto middle = values.begin() + static_cast<int64_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
 
 /// For each frame of an activity, how far the nearest other one is that is `away` or more frames
 /// from it.
@@ -63,11 +57,11 @@ Sides strange_sides(const RowRange& activity, const MatrixFView& features,
                     const Recurrence& recurrence, const RepetitionOptions& options, double rate) {
     const std::vector<int32_t> holds(recurrence.hold.begin() + activity.first,
                                      recurrence.hold.begin() + activity.end);
-    const double away = std::min(std::max(options.least_return * rate, double(median(holds))),
+    const double away = std::min(std::max(options.least_return * rate, double(upper_median(holds))),
                                  double(activity.size()) / 3);
     const std::vector<float> distances = return_distances({features, activity}, away);
-    const double threshold =
-        std::max(options.transition_floor, options.transition_ratio * double(median(distances)));
+    const double threshold = std::max(options.transition_floor,
+                                      options.transition_ratio * double(upper_median(distances)));
     const int64_t longest = std::min(frame_count(options.longest_side, rate), activity.size() / 3);
     return {strange_prefix(distances.begin(), longest, threshold),
             strange_prefix(distances.rbegin(), longest, threshold)};
