@@ -229,14 +229,16 @@ Linked count_linked(const SubjectBundles& all, const std::vector<int32_t>& class
     return count;
 }
 
+using LabelPairs = std::map<std::pair<std::string, std::string>, int64_t>;
+
 /// Of one corpus.
 struct Judgement {
     double usual_cost = 0, cpu = 0;
     int64_t bundles = 0, links = 0;
     int64_t labelled = 0;  ///< links between bundles with labels
     Linked by_label, by_form;
-    std::map<std::pair<std::string, std::string>, int64_t> different;  ///< links between labels
-    int64_t in_blends = 0;                                             ///< of those
+    LabelPairs different;   ///< links between labels
+    int64_t in_blends = 0;  ///< of those
 
     int64_t wrong() const {
         int64_t count = 0;
@@ -279,14 +281,18 @@ Judgement judge(const Options& options, const SubjectBundles& all) {
     return judgement;
 }
 
+void print(const LabelPairs& different) {
+    for (const auto& [labels, count] : different)
+        fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
+}
+
 void print(const std::string& name, const Judgement& judgement) {
     fmt::print(
         "{:>4} {:>7} {:>7} {:>10.3f} {:>6} {:>8} {:>7.3f} {:>7} {:>7.3f} {:>9} {:>6} {:>7.1f}\n",
         name, judgement.bundles, judgement.by_label.counted, judgement.usual_cost, judgement.links,
         judgement.labelled, judgement.by_label.share(), judgement.by_form.counted,
         judgement.by_form.share(), judgement.wrong(), judgement.in_blends, judgement.cpu);
-    for (const auto& [labels, count] : judgement.different)
-        fmt::print("     {} of {} and {}\n", count, labels.first, labels.second);
+    print(judgement.different);
     std::fflush(stdout);
 }
 
@@ -295,6 +301,7 @@ void print_all(const std::vector<Judgement>& corpora) {
     constexpr double asked = 0.9;
     Linked by_label, by_form;
     int64_t labelled = 0, wrong = 0, in_blends = 0;
+    LabelPairs different;
     double least = 1;
     for (const Judgement& one : corpora) {
         by_label += one.by_label;
@@ -302,6 +309,7 @@ void print_all(const std::vector<Judgement>& corpora) {
         labelled += one.labelled;
         wrong += one.wrong();
         in_blends += one.in_blends;
+        for (const auto& [labels, count] : one.different) different[labels] += count;
         least = std::min(least, one.by_label.share());
     }
     const auto count = [&](const auto& is) { return std::ranges::count_if(corpora, is); };
@@ -317,6 +325,7 @@ void print_all(const std::vector<Judgement>& corpora) {
         corpora.size(), by_label.share(), by_label.counted, least, by_form.share(), by_form.counted,
         wrong, labelled, in_blends, count(is_linked), count(has_none),
         count(has_none_but_in_blends));
+    print(different);
 }
 
 }  // namespace
