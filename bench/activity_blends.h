@@ -4,27 +4,27 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 
-#include "kinetome/formats/annotation.h"
 #include "kinetome/models/bundle_score.h"
+#include "kinetome/models/truth_timeline.h"
 
 namespace kinetome::bench {
 
-/// By frame the class that it may be of beside its own, or none. `rows` are of one take.
-inline FrameClasses blended_with(std::span<const TruthRow> rows, int64_t frames,
+/// By frame the class that it may be of beside its own, or none. Of a take of so many frames, which
+/// may have no annotation.
+inline FrameClasses blended_with(const TruthTimeline& truth, int64_t frames,
                                  const std::map<std::string, int32_t>& numbers) {
     FrameClasses classes(static_cast<size_t>(frames), no_class);
-    const auto fill = [&](int64_t first, int64_t end, int32_t number) {
-        for (int64_t frame = std::max<int64_t>(first, 0); frame < std::min(end, frames); ++frame)
-            classes[static_cast<size_t>(frame)] = number;
+    const auto number = [&](const TrueActivity& activity) {
+        return numbers.at(truth.classes[static_cast<size_t>(activity.label)]);
     };
-    for (const TruthRow& row : rows) {
-        const auto next = std::ranges::find(rows, row.end, &TruthRow::first);
-        if (next == rows.end() || next->label == row.label) continue;
-        fill(std::max(row.end_lo, row.first), row.end, numbers.at(next->label));
-        fill(row.end, std::min(row.end_hi, next->end), numbers.at(row.label));
+    for (size_t i = 0; i < truth.zones.size(); ++i) {
+        const TrueActivity &before = truth.activities[i], &after = truth.activities[i + 1];
+        if (before.label == after.label) continue;
+        const auto boundary = classes.begin() + after.frames.first;
+        std::fill(classes.begin() + truth.zones[i].first, boundary, number(after));
+        std::fill(boundary, classes.begin() + truth.zones[i].end, number(before));
     }
     return classes;
 }

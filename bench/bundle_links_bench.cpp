@@ -30,6 +30,7 @@
 #include "kinetome/models/bundle_link_rows.h"
 #include "kinetome/models/bundle_links.h"
 #include "kinetome/models/motion_bundle.h"
+#include "kinetome/models/truth_timeline.h"
 #include "program.h"
 #include "spelled_takes.h"
 
@@ -164,16 +165,17 @@ SubjectBundles of_generated(const Options& options, uint64_t seed) {
     return all;
 }
 
-/// Labels of the frames at the pose rate, which truth counts at too.
-void add_labels(const Clip& clip, std::span<const TruthRow> rows,
+/// Those of one more take; an annotation counts at the pose rate.
+void add_labels(const TruthTimeline& timeline, int64_t frames,
                 std::map<std::string, int32_t>& numbers, Truth& truth) {
-    auto& classes = truth.labels.emplace_back(size_t(clip.frames()), no_class);
-    for (const TruthRow& row : rows) {
-        const int32_t number = numbers.emplace(row.label, int32_t(numbers.size())).first->second;
-        for (int64_t frame = row.first; frame < std::min(row.end, clip.frames()); ++frame)
-            classes[size_t(frame)] = number;
+    for (const std::string& label : timeline.classes)
+        numbers.emplace(label, int32_t(numbers.size()));
+    auto& classes = truth.labels.emplace_back(size_t(frames), no_class);
+    for (const TrueActivity& activity : timeline.activities) {
+        std::fill(classes.begin() + activity.frames.first, classes.begin() + activity.frames.end,
+                  numbers.at(timeline.classes[size_t(activity.label)]));
     }
-    truth.blends.push_back(bench::blended_with(rows, clip.frames(), numbers));
+    truth.blends.push_back(bench::blended_with(timeline, frames, numbers));
 }
 
 /// Subjects are the folders.
@@ -194,7 +196,10 @@ SubjectBundles of_takes(const Options& options) {
         Truth truth;
         for (const fs::path& file : files) {
             clips.push_back(resample(bench::read_take(file), bench::pose_rate));
-            add_labels(clips.back(), rows_of[file.stem().string()], numbers, truth);
+            const int64_t frames = clips.back().frames();
+            add_labels(truth_timeline(rows_of[file.stem().string()], frames, bench::pose_rate,
+                                      options.truth.string()),
+                       frames, numbers, truth);
         }
         truth.forms = truth.labels;
         add_subject(clips, truth, subject++, options.threads, all);

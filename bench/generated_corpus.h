@@ -8,6 +8,7 @@
 #include "activity_blends.h"
 #include "kinetome/base/parallel.h"
 #include "kinetome/models/bundle_score.h"
+#include "kinetome/models/truth_timeline.h"
 #include "kinetome/synthesis/corpus_generator.h"
 #include "kinetome/synthesis/take.h"
 
@@ -45,7 +46,9 @@ struct GeneratedCorpus {
                 if (is_new) labels.push_back(row.label);
                 std::fill(of_take.begin() + row.first, of_take.begin() + row.end, label->second);
             }
-            blends.push_back(blended_with(truth, plan.frames, numbers));
+            blends.push_back(
+                blended_with(truth_timeline(truth, plan.frames, synthesis_rate, plan.name()),
+                             plan.frames, numbers));
         }
     }
 

@@ -42,7 +42,6 @@ void unwrap(std::span<double> angles) {
 
 /// Clips of one class then agree on the turn they count from.
 void shift_median_towards_zero(std::span<double> angles) {
-    if (angles.empty()) return;
     const double median = lower_quantile(std::vector(angles.begin(), angles.end()), 0.5);
     const double shift = full_turn * std::round(median / full_turn);
     for (double& angle : angles) angle -= shift;

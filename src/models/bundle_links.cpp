@@ -1,7 +1,6 @@
 #include "kinetome/models/bundle_links.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -148,22 +147,22 @@ class Linking {
             is_linked[static_cast<size_t>(pair.second)] = true;
         }
         std::vector<Near> nearest(speakers_.bundles.size());
+        const auto improves = [&](int32_t bundle, const Near& there) {
+            const auto of = static_cast<size_t>(bundle);
+            return !is_linked[of] && there.nearer_than(nearest[of]);
+        };
         for (const BundleDistance& pair : distances_.within) {
             if (of_one_body(pair) || !linked_kinds.contains(kinds_of(pair.first, pair.second)))
                 continue;
-            const std::array there = {Near{subject(pair.second), pair.second, pair.nearest},
-                                      Near{subject(pair.first), pair.first, pair.nearest}};
-            const std::array of = {static_cast<size_t>(pair.first),
-                                   static_cast<size_t>(pair.second)};
-            const auto improves = [&](size_t i) {
-                return !is_linked[of[i]] && there[i].nearer_than(nearest[of[i]]);
-            };
-            if (!(improves(0) || improves(1)) ||
+            const Near first{subject(pair.first), pair.first, pair.nearest};
+            const Near second{subject(pair.second), pair.second, pair.nearest};
+            const bool of_first = improves(pair.first, second);
+            const bool of_second = improves(pair.second, first);
+            if (!(of_first || of_second) ||
                 neighbours_.contradict(pair.first, pair.second, pair.most))
                 continue;
-            for (const size_t i : {0, 1}) {
-                if (improves(i)) nearest[of[i]] = there[i];
-            }
+            if (of_first) nearest[static_cast<size_t>(pair.first)] = second;
+            if (of_second) nearest[static_cast<size_t>(pair.second)] = first;
         }
         for (int32_t a = 0; a < static_cast<int32_t>(nearest.size()); ++a) {
             const Near& other = nearest[static_cast<size_t>(a)];

@@ -21,13 +21,13 @@ struct Witness {
 BundleNeighbours::BundleNeighbours(std::span<const BundleDistance> within,
                                    std::span<const int32_t> subject_of)
     : subject_of_(subject_of.begin(), subject_of.end()), neighbours_(subject_of.size()) {
-    const auto add = [&](int32_t to, int32_t bundle, double most) {
-        neighbours_[static_cast<size_t>(to)].push_back(
-            {subject_of[static_cast<size_t>(bundle)], bundle, most});
-    };
     for (const BundleDistance& pair : within) {
-        add(pair.first, pair.second, pair.most);
-        add(pair.second, pair.first, pair.most);
+        const auto add = [&](int32_t to, int32_t bundle) {
+            neighbours_[static_cast<size_t>(to)].push_back(
+                {subject_of[static_cast<size_t>(bundle)], bundle, pair.most, pair.agree()});
+        };
+        add(pair.first, pair.second);
+        add(pair.second, pair.first);
     }
     for (auto& of_one : neighbours_) std::ranges::sort(of_one, {}, &Neighbour::place);
 }
@@ -50,8 +50,7 @@ void BundleNeighbours::visit_neighbours_of_either(int32_t a, int32_t b, const Vi
 bool BundleNeighbours::keep_company(int32_t a, int32_t b, double share) const {
     int64_t with_one = 0, with_other = 0, with_both = 0;
     visit_neighbours_of_either(a, b, [&](const Neighbour* one, const Neighbour* other) {
-        const bool agrees_with_one = one && one->agrees(),
-                   agrees_with_other = other && other->agrees();
+        const bool agrees_with_one = one && one->agrees, agrees_with_other = other && other->agrees;
         with_one += agrees_with_one;
         with_other += agrees_with_other;
         with_both += agrees_with_one && agrees_with_other;
@@ -75,10 +74,10 @@ bool BundleNeighbours::contradict(int32_t a, int32_t b, double most) const {
             subject = its;
         }
         const auto no_farther = [&](const Neighbour* neighbour) {
-            return neighbour && neighbour->agrees() && neighbour->most <= most;
+            return neighbour && neighbour->agrees && neighbour->most <= most;
         };
         body.near_both |= one && other;
-        body.agrees_with_both |= one && other && one->agrees() && other->agrees();
+        body.agrees_with_both |= one && other && one->agrees && other->agrees;
         body.as_near_to_one |= no_farther(one) || no_farther(other);
     });
     return against + body.speaks_against() > 0;

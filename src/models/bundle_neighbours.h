@@ -31,9 +31,9 @@ class BundleNeighbours {
     struct Neighbour {
         int32_t subject = 0;
         int32_t bundle = 0;
-        double most = 0;  ///< as in BundleDistance
+        double most = 0;      ///< as in BundleDistance
+        bool agrees = false;  ///< as BundleDistance tells
 
-        bool agrees() const { return most <= farthest; }
         std::pair<int32_t, int32_t> place() const { return {subject, bundle}; }
     };
 
